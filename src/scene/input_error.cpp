@@ -1,0 +1,1 @@
+#include "src/scene/input_error.h"

@@ -1,0 +1,50 @@
+#pragma once
+// A scene: polygons with materials.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/polygon.h"
+
+namespace exitance {
+
+/// Diffuse material; one number a band (three: linear RGB).
+struct Material {
+  std::string name;
+  std::vector<double> rho;  ///< reflectance, each in [0, 1)
+  std::vector<double> E;    ///< self-emitted exitance [W/m²], each ≥ 0
+};
+
+/// One input polygon: the unit that occludes. Its front is where its outer loop runs counter-clockwise.
+struct Surface {
+  Polygon polygon;
+  std::uint32_t material = 0;
+  std::uint32_t object = 0;
+  bool obstruction_only = false;  ///< a pure occluder: hides, but neither emits nor receives
+  std::uint32_t line = 0;         ///< where it stands in its object's file; 0 when unknown
+};
+
+struct SceneObject {
+  std::string name;
+  std::string file;  ///< empty when it comes from no file
+};
+
+struct Camera {
+  Vec3 eye, target, up{0, 0, 1};
+  double vertical_fov_degrees = 40;
+};
+
+struct Scene {
+  std::string name;
+  std::uint32_t bands = 3;
+  std::string unit = "W/m^2";
+  std::vector<Material> materials;
+  std::vector<SceneObject> objects;
+  std::vector<Surface> surfaces;  ///< in file order
+  std::optional<Camera> camera;
+  std::vector<std::string> warnings;  ///< what was noticed while reading and does not stop the work
+};
+
+}  // namespace exitance
