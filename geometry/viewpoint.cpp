@@ -234,10 +234,16 @@ PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
   result.visibility = r.occluder_count() == 0 ? Visibility::open
                       : lambert.arcs() == 0   ? Visibility::blocked
                                               : Visibility::partial;
-  // A true form factor is never negative, so that raising to 0 only removes error.
-  const Real value = lambert.value();
-  result.F = value > 0 ? static_cast<double>(value) : 0.0;
-  result.error = static_cast<double>(lambert.error()) * (1 + 4 * kRoundoff) + 2 * kRoundoff * result.F;
+  // What does not exceed its own error is 0 as far as can be told. A true form factor is never negative, so that raising to
+  // 0 only removes error.
+  const Real value = lambert.value(), error = lambert.error();
+  if (value > error) {
+    result.F = static_cast<double>(value);
+    result.error = static_cast<double>(error) * (1 + 4 * kRoundoff) + 2 * kRoundoff * result.F;
+  } else {
+    result.F = 0;
+    result.error = static_cast<double>(value > 0 ? Real(value + error) : error) * (1 + 4 * kRoundoff);
+  }
   return result;
 }
 
