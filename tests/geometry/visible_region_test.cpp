@@ -51,7 +51,8 @@ KernelAnswer ask_kernel(const PointCase& question) {
   return answer;
 }
 
-/// What a rounding of the corners of a region on the source may do to its area.
+/// A region's corners are rounded and come without a bound, so its area is held to what tells a wrong region from a
+/// right one.
 double area_tolerance(const PointCase& question) {
   double extent = 0, perimeter = 0;
   const auto& loop = question.source.outer;
@@ -59,7 +60,7 @@ double area_tolerance(const PointCase& question) {
     extent = std::max({extent, std::abs(loop[i].x), std::abs(loop[i].y), std::abs(loop[i].z)});
     perimeter += norm(loop[(i + 1) % loop.size()] - loop[i]);
   }
-  return 1e-14 * perimeter * extent + 1e-12 * norm(area_vector(question.source));
+  return 1e-11 * perimeter * extent + 1e-6 * norm(area_vector(question.source));
 }
 
 std::string family_of(const PointCase& question) {
