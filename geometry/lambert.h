@@ -31,7 +31,6 @@ class LambertSum {
     const Real theta = atan2(S, D);
     const Real g = dot(n_, side.m) / (n_length_ * side.length);
     const Real term = g * theta;
-    sum_ = arc.of_source ? sum_ + term : sum_ - term;
 
     // δw: three roundings on parts no longer than |p| + |e|, and what the corners carry. δC: that of the side's normal,
     // or 7 u |p||e| and the corners'. δθ ≤ (δS + δD) / (|w0||w1|), as S² + D² = |w0|²|w1|²; 1.1 covers the second order, which the
@@ -48,11 +47,14 @@ class LambertSum {
     const bool second_order_is_small = 20 * dw < (length0 < length1 ? length0 : length1) &&
                                        20 * side.error < side.length &&
                                        20 * arc.t0_error * e_length < length0 && 20 * arc.t1_error * e_length < length1;
-    // An arc is shorter than π, so no term exceeds it.
-    error_ += second_order_is_small ? Real(fabs(g) * dtheta + theta * dg + 4 * u * fabs(term))
-                                    : Real(2 * boost::math::constants::pi<Real>());
-    size_ += fabs(term);
     ++arcs_;
+    if (!second_order_is_small) {  // nothing is known; an arc is shorter than π
+      error_ += boost::math::constants::pi<Real>();
+      return;
+    }
+    sum_ = arc.of_source ? sum_ + term : sum_ - term;
+    error_ += fabs(g) * dtheta + theta * dg + 4 * u * fabs(term);
+    size_ += fabs(term);
   }
 
   std::size_t arcs() const { return arcs_; }

@@ -329,25 +329,27 @@ std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {
   std::vector<BoundaryPiece> pieces;
   int source_facing = 0;
   if (s.is_covered || !s.prepare(source, source_facing) || !s.put_occluders(source, source_facing)) return pieces;
-  const Plane& plane = s.soup.facets()[source.facet].plane;
-  const Vec3 x = s.receiver.point;
-  const double height = dot(plane.normal, plane.origin - x);
-  s.region.for_each_arc([&](const Arc<double>& arc) {
+  // Near the point of view a direction must be known far better than the point where it meets the source's plane.
+  s.set_source<Extended>(source.facet, source_facing);
+  s.add_candidates<Extended>(source.facet);
+  const PlanePoints& plane = s.soup.facets()[source.facet].plane.points;
+  const auto normal = cross(difference<Extended>(*plane.b, *plane.a), difference<Extended>(*plane.c, *plane.a));
+  const Extended height = dot(normal, difference<Extended>(*plane.a, s.receiver.point));
+  s.fine.for_each_arc([&](const Arc<Extended>& arc) {
     if (!(arc.t0 < arc.t1)) return;
     const auto& p = arc.cone->corners[arc.side->from].w;
     const auto e = arc.cone->corners[arc.side->to].w - p;
-    const auto point = [&](double t) {
+    const auto point = [&](const Extended& t) {
       const auto w = p + t * e;
-      const Vec3 v{w.x, w.y, w.z};
-      return arc.of_source ? x + v : x + (height / dot(plane.normal, v)) * v;
+      const Extended scale = arc.of_source ? Extended(1) : Extended(height / dot(normal, w));
+      return Vec3{static_cast<double>(s.receiver.point.x + scale * w.x), static_cast<double>(s.receiver.point.y + scale * w.y),
+                  static_cast<double>(s.receiver.point.z + scale * w.z)};
     };
-    BoundaryPiece piece{point(arc.t0), point(arc.t1), arc.of_source};
-    // Edges run counter-clockwise about what they belong to when it is seen from its front.
-    const auto& m = arc.side->m;
-    const auto turn = cross(p, e);
-    const bool inward_left = dot(turn, m) < 0;
-    if (inward_left != arc.of_source) std::swap(piece.from, piece.to);
-    pieces.push_back(piece);
+    // The region lies to the left of the direction whose normal with x points to it: out of an occluder's cone.
+    const bool towards_cone = dot(cross(p, e), arc.side->m) < 0;
+    const Vec3 from = point(arc.t0), to = point(arc.t1);
+    pieces.push_back(towards_cone == arc.of_source ? BoundaryPiece{from, to, arc.of_source}
+                                                   : BoundaryPiece{to, from, arc.of_source});
   });
   return pieces;
 }
