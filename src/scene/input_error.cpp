@@ -1,1 +1,0 @@
-#include "src/scene/input_error.h"
