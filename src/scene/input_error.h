@@ -10,8 +10,7 @@ namespace exitance {
 /// Thrown by readers. what() is "file:line: what; how to mend" (the line is left out where there is none).
 class InputError : public std::runtime_error {
  public:
-  InputError(const std::string& file, std::size_t line, const std::string& what)
-      : std::runtime_error(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + what) {}
+  InputError(const std::string& file, std::size_t line, const std::string& what);
 };
 
 /// Thrown when something would not fit or a limit was reached; the program ends with exit code 4.

@@ -15,6 +15,8 @@ struct Material {
   std::string name;
   std::vector<double> rho;  ///< reflectance, each in [0, 1)
   std::vector<double> E;    ///< self-emitted exitance [W/m²], each ≥ 0
+  std::string file;         ///< where it is defined; empty when in no file
+  std::uint32_t line = 0;   ///< and in which line; 0 when unknown
 };
 
 /// One input polygon: the unit that occludes. Its front is where its outer loop runs counter-clockwise.

@@ -1,0 +1,17 @@
+#pragma once
+// Wavefront OBJ.
+
+#include <filesystem>
+
+#include "src/scene/face_list.h"
+#include "src/scene/material_check.h"
+
+namespace exitance {
+
+/// Reads v, f (all index forms, negative ones too), usemtl and mtllib (relative to the OBJ). An object is what `o` names;
+/// in a file without `o`, what `g` names. Texture coordinates, normals and smoothing are ignored; lines and points too, with
+/// a warning that counts them. A material that no library defines keeps its name and has no rho.
+/// Throws InputError for missing files, malformed numbers and vertex numbers that are zero or reach before the first.
+FaceList read_obj(const std::filesystem::path& path, Emission emission);
+
+}  // namespace exitance

@@ -1,0 +1,52 @@
+#pragma once
+// Scene files (TOML): objects put together from meshes, polygons and boxes.
+//
+//   name = "Cornell box"            # optional; the file's name otherwise
+//   unit = "W/m^2"                  # of E and of all results; or "lm/m^2"
+//
+//   [camera]                        # optional
+//   eye = [x, y, z]
+//   target = [x, y, z]
+//   up = [0, 0, 1]                  # this unless said otherwise
+//   vertical_fov = 40               # degrees, likewise
+//
+//   [[material]]
+//   name = "white"
+//   rho = 0.7                       # or one number a band: [0.7, 0.7, 0.6]
+//   E = 0                           # likewise; 0 unless said otherwise
+//   emission = "exitance"           # how E is meant: "exitance" or "radiance" (then E times pi is emitted)
+//
+//   [[object]]                      # of exactly one of these forms
+//   name = "table"                  # optional
+//   mesh = "table.obj"              # relative to this file; .obj, .ply, .off or .stl
+//   polygons = [ [[x,y,z], …], {polygon = [[x,y,z], …], holes = [[[x,y,z], …]], material = "white"} ]
+//   box = {min = [x,y,z], max = [x,y,z]}          # six faces that look outward; flip = true makes a room of it
+//   furnished_room = {polygons = 500, seed = 1}   # a room made by rules, see furnished_room.h
+//
+//   material = "white"              # for all its faces, whatever the mesh says
+//   materials = {wood = "white"}    # or for those of some of the mesh's materials
+//   max_rho = 0.9                   # lowers the reflectances that the mesh itself gives (furniture often says 1)
+//   scale = 0.01                    # or [sx, sy, sz]; then
+//   rotate = {axis = [0,0,1], degrees = 30}       # about the origin; or a list of these, the first one first; then
+//   translate = [x, y, z]
+//   flip = true                     # turns every face over; then
+//   two_sided = true                # adds every face again, turned over, right after itself
+//   obstruction_only = true         # hides, but neither emits nor receives
+//
+// Every [[object]] is one object of the scene, a furnished room as many as it has. Materials have one number a band; numbers
+// are repeated to the length of the lists, so that a scene with numbers only has one band. Keys that are not known are
+// errors.
+
+#include <filesystem>
+
+#include "src/scene/material_check.h"
+#include "src/scene/scene.h"
+
+namespace exitance {
+
+/// Reads a scene file and the meshes it names. emission: how E and Ke are meant where the file does not say. Faces of meshes
+/// are mended (face_mending.h); polygons written in the file that cross themselves are refused, unless keep_faults. Throws
+/// InputError.
+Scene read_scene_file(const std::filesystem::path& path, Emission emission, bool keep_faults);
+
+}  // namespace exitance

@@ -1,0 +1,103 @@
+#include "src/scene/write_obj.h"
+
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "geometry/facets.h"
+#include "src/scene/input_error.h"
+
+namespace exitance {
+namespace {
+
+void append(std::string& text, double value) {
+  std::array<char, 32> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  text.append(1, ' ').append(digits.data(), end);
+}
+
+/// Names end at the first blank in OBJ.
+std::string one_word(std::string name) {
+  for (char& c : name)
+    if (c == ' ' || c == '\t') c = '_';
+  return name;
+}
+
+void write_whole(const std::filesystem::path& path, const std::string& text) {
+  std::filesystem::path beside = path;
+  beside += ".part";
+  std::ofstream out(beside, std::ios::binary);
+  out << text;
+  out.close();
+  std::error_code failure;
+  if (out) std::filesystem::rename(beside, path, failure);
+  if (!out || failure) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw InputError(path.string(), 0, "cannot be written; is the folder there, writable and not full?");
+  }
+}
+
+std::string materials_text(const Scene& scene) {
+  std::string text = "# Kd: reflectance. Ke: emitted exitance, " + scene.unit + ".\n";
+  for (const Material& material : scene.materials) {
+    text += "newmtl " + one_word(material.name) + "\n";
+    for (const auto& [key, bands] : {std::pair{"Kd", &material.rho}, {"Ke", &material.E}}) {
+      text += key;
+      for (std::size_t band = 0; band < 3; ++band) append(text, (*bands)[scene.bands == 1 ? 0 : band]);
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+std::string geometry_text(const Scene& scene, const std::string& material_file) {
+  std::map<std::tuple<double, double, double>, std::size_t> index_of;
+  std::string vertices, faces;
+  const auto add_face = [&](const Loop& loop) {
+    faces += 'f';
+    for (const Vec3& p : loop) {
+      const auto [place, is_new] = index_of.try_emplace({p.x, p.y, p.z}, index_of.size() + 1);
+      if (is_new) {
+        vertices += 'v';
+        for (int axis = 0; axis < 3; ++axis) append(vertices, p[axis]);
+        vertices += '\n';
+      }
+      faces += ' ' + std::to_string(place->second);
+    }
+    faces += '\n';
+  };
+  const Surface* previous = nullptr;
+  for (const Surface& surface : scene.surfaces) {
+    const bool new_object = !previous || surface.object != previous->object;
+    if (new_object && surface.object < scene.objects.size())
+      faces += "o " + one_word(scene.objects[surface.object].name) + '\n';
+    if (!previous || surface.material != previous->material)
+      faces += "usemtl " + one_word(scene.materials.at(surface.material).name) + '\n';
+    previous = &surface;
+    if (surface.polygon.holes.empty())
+      add_face(surface.polygon.outer);
+    else
+      for (const Loop& facet : cut_into_facets(surface.polygon)) add_face(facet);
+  }
+  return "# " + scene.name + "\nmtllib " + material_file + '\n' + vertices + faces;
+}
+
+}  // namespace
+
+void write_obj(const Scene& scene, const std::filesystem::path& path) {
+  if (scene.bands != 1 && scene.bands != 3)
+    throw std::invalid_argument("OBJ materials have one or three bands, not " + std::to_string(scene.bands));
+  std::filesystem::path materials = path;
+  materials.replace_extension(".mtl");
+  write_whole(materials, materials_text(scene));
+  write_whole(path, geometry_text(scene, materials.filename().string()));
+}
+
+}  // namespace exitance
