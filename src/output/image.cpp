@@ -19,13 +19,10 @@
 namespace exitance {
 namespace {
 
-// Where in a pixel its samples lie: no two in the same row or column.
-constexpr std::array<std::array<double, 2>, 6> kSamples = {{{1.0 / 12, 7.0 / 12},
-                                                            {3.0 / 12, 1.0 / 12},
-                                                            {5.0 / 12, 9.0 / 12},
-                                                            {7.0 / 12, 3.0 / 12},
-                                                            {9.0 / 12, 11.0 / 12},
-                                                            {11.0 / 12, 5.0 / 12}}};
+// Where in a pixel its samples lie, from its middle, in sixteenths: no two in the same row or column, no three in line.
+// (Direct3D's standard pattern of eight.)
+constexpr std::array<std::array<double, 2>, 8> kSamples = {
+    {{1, -3}, {-1, 3}, {5, 1}, {-3, -5}, {-5, 5}, {-7, -1}, {3, 7}, {7, -7}}};
 
 // Direction of the ray through any point of the picture.
 class Lens {
@@ -86,8 +83,9 @@ Image render(const Faces& faces, const Appearance& appearance, const Camera& cam
     for (std::uint32_t y = rows.begin(); y < rows.end(); ++y) {
       for (std::uint32_t x = 0; x < options.width; ++x) {
         for (std::size_t k = 0; k < kSamples.size(); ++k) {
-          const std::optional<FaceHit> hit = rays.first_front(
-              lens.direction((x + kSamples[k][0]) / options.width, (y + kSamples[k][1]) / options.height));
+          const Vec3 direction = lens.direction((x + 0.5 + kSamples[k][0] / 16) / options.width,
+                                                (y + 0.5 + kSamples[k][1] / 16) / options.height);
+          const std::optional<FaceHit> hit = rays.first_front(direction);
           if (!hit) continue;
           const std::uint32_t e = faces.element(hit->face);
           const Rgb rgb = smooth ? interpolate(*hit, of_point) : of_element[e];
@@ -143,9 +141,9 @@ Camera default_camera(std::span<const Vec3> points, bool closed) {
   camera.target = 0.5 * (box.lower + box.upper);
   const Vec3 half = 0.5 * (box.upper - box.lower);
   if (closed) {
-    camera.eye = camera.target + Vec3{-0.96 * half.x, -0.96 * half.y, 0.6 * half.z};
-    camera.target = camera.target + Vec3{0, 0, -0.2 * half.z};
-    camera.vertical_fov_degrees = 75;
+    camera.eye = camera.target + Vec3{-0.96 * half.x, -0.96 * half.y, 0.35 * half.z};
+    camera.target = camera.target + Vec3{0, 0, -0.1 * half.z};
+    camera.vertical_fov_degrees = 80;
   } else {
     // Far enough for the sphere around everything.
     const double distance = 1.1 * norm(half) / std::sin(camera.vertical_fov_degrees * std::numbers::pi / 360);

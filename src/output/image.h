@@ -33,8 +33,8 @@ Image render(const Faces& faces, const Appearance& appearance, const Camera& cam
 /// As PNG. Throws InputError when the file cannot be written.
 void write_png(const std::filesystem::path& path, const Image& image);
 
-/// A view of everything for a scene that brings no camera, z up. A closed scene is seen from one of its upper corners
-/// inside, any other from outside, a little from above.
+/// A view of everything for a scene that brings no camera, z up. A closed scene is seen from inside, near one of its
+/// upright edges, any other from outside, a little from above.
 Camera default_camera(std::span<const Vec3> points, bool closed);
 
 }  // namespace exitance
