@@ -1,126 +1,108 @@
-// A whole hemisphere, every polygon asked from one point, against rays from the same points in the same run.
+// A whole hemisphere: every polygon of a room asked from one point, against rays from the same points, in turns.
 
-#include <benchmark/benchmark.h>
-
-#include <iostream>
 #include <map>
 
+#include "bench/checked_main.h"
 #include "bench/measured_room.h"
 
 namespace exitance {
 namespace {
 
-constexpr std::uint32_t kRays = 64;
-constexpr std::size_t kPoints = 8;
-
-struct Point {
+struct View {
   Receiver receiver;
-  std::vector<RaySampledVisibility::Rays> rays;  ///< to some polygons of which something is seen
+  std::vector<RaySampledVisibility::Rays> shadow_rays;  ///< to some of the facets that are seen, drawn at random
 };
 
-struct Question {
-  Question(Scene scene, std::size_t count) : room(std::move(scene)), sampled(room.soup, {.rays = kRays}) {
+struct Hemispheres {
+  Hemispheres(Scene scene, std::size_t count) : room(std::move(scene)), rays(room.soup, {.rays = kRays}) {
+    constexpr std::size_t kSources = 256;
     std::mt19937_64 random(3);
     Viewpoint view(room.soup);
-    while (points.size() < count) {
-      Point p{room.random_receiver(random, view), {}};
-      const Hemisphere all = look_at_all(room, view);
-      require_closure(all, p.receiver);
-      if (all.visible == 0) continue;
-      while (p.rays.size() < 256) {
-        const auto facet = static_cast<std::uint32_t>(below(random, room.facets()));
-        if (view.form_factor({facet, {}}, 1e-12).F > 0) {
-          p.rays.push_back(sampled.shadow_rays(p.receiver, {facet, {}}, p.rays.size()));
+    while (views.size() < count) {
+      View v{receiver_at(random_element(room, random)), {}};
+      const Hemisphere all = look_around(room, view, v.receiver);
+      require_closure(all, v.receiver);
+      visible += all.visible;
+      while (v.shadow_rays.size() < kSources) {
+        const Source source{static_cast<std::uint32_t>(below(random, room.facets())), {}};
+        if (view.form_factor(source, kPointTolerance).F > 0) {
+          v.shadow_rays.push_back(rays.shadow_rays(v.receiver, source, v.shadow_rays.size()));
         }
       }
-      visible += all.visible;
-      points.push_back(std::move(p));
+      views.push_back(std::move(v));
     }
   }
 
   MeasuredRoom room;
-  RaySampledVisibility sampled;
-  std::vector<Point> points;
-  std::size_t visible = 0;  ///< from all points
+  RaySampledVisibility rays;
+  std::vector<View> views;
+  std::size_t visible = 0;  ///< facets, from all points together
 };
 
-void measure(benchmark::State& state, const Question& q) {
-  Viewpoint view(q.room.soup);
-  Median exact, ray;
-  std::vector<std::uint8_t> visible(kRays);
+/// Counters: `visible` polygons from one point; exact_ns for each of them; ray_ns a packet ray, nothing but its
+/// casting; and what a visible polygon costs in such rays.
+void measure(benchmark::State& state, const Hemispheres& h) {
+  Viewpoint view(h.room.soup);
+  std::vector<double> exact, ray;
+  std::array<std::uint8_t, kRays> visible;
   for (auto _ : state) {
-    double t_exact = 0, t_ray = 0;
-    std::size_t rays = 0;
-    for (const Point& p : q.points) {
-      t_exact += seconds([&] {
-        view.look_from(p.receiver);
-        benchmark::DoNotOptimize(look_at_all(q.room, view));
+    double exact_seconds = 0, ray_seconds = 0;
+    std::size_t casts = 0;
+    for (const View& v : h.views) {
+      exact_seconds += seconds([&] { benchmark::DoNotOptimize(look_around(h.room, view, v.receiver)); });
+      ray_seconds += seconds([&] {
+        for (const auto& r : v.shadow_rays) h.rays.cast(r.from, r.to, visible);
       });
-      t_ray += seconds([&] {
-        for (const auto& r : p.rays) q.sampled.cast(r.from, r.to, visible);
-      });
-      rays += p.rays.size() * kRays;
+      casts += v.shadow_rays.size();
     }
-    exact.add(t_exact / static_cast<double>(q.visible));
-    ray.add(t_ray / static_cast<double>(rays));
-    state.SetIterationTime(t_exact);
+    exact.push_back(exact_seconds / static_cast<double>(h.visible));
+    ray.push_back(ray_seconds / static_cast<double>(casts * kRays));
+    state.SetIterationTime(exact_seconds);
   }
-  state.counters["visible"] = static_cast<double>(q.visible) / static_cast<double>(q.points.size());
-  state.counters["ns_per_visible"] = 1e9 * exact.value();
-  state.counters["ray_ns"] = 1e9 * ray.value();
-  state.counters["rays_per_visible_polygon"] = exact.value() / ray.value();
+  state.counters["visible"] = static_cast<double>(h.visible) / static_cast<double>(h.views.size());
+  state.counters["exact_ns"] = 1e9 * median(exact);
+  state.counters["ray_ns"] = 1e9 * median(ray);
+  state.counters["rays_per_visible_polygon"] = median(exact) / median(ray);
 }
 
-std::size_t points_for(std::int64_t polygons) {
-  return polygons > 10000 ? 2 : kPoints;
+std::size_t view_count(std::int64_t polygons) {
+  return polygons > 10000 ? 2 : 8;
 }
 
-void hemisphere_of_polygons(benchmark::State& state) {
-  static std::map<std::int64_t, Question> questions;
-  const auto n = state.range(0);
-  auto place = questions.find(n);
-  if (place == questions.end()) {
-    place = questions.try_emplace(n, make_furnished_room(static_cast<std::uint32_t>(n), 1), points_for(n)).first;
-  }
-  measure(state, place->second);
+void hemisphere(benchmark::State& state) {
+  static std::map<std::int64_t, Hemispheres> made;
+  const std::int64_t n = state.range(0);
+  if (!made.contains(n)) made.try_emplace(n, furnished_room(n), view_count(n));
+  measure(state, made.at(n));
 }
-BENCHMARK(hemisphere_of_polygons)
+BENCHMARK(hemisphere)
+    ->ArgName("polygons")
     ->Arg(500)
     ->Arg(5000)
     ->Arg(60000)
     ->UseManualTime()
-    ->Unit(benchmark::kMillisecond)
-    ->MinTime(2);
+    ->MinTime(1)
+    ->Unit(benchmark::kMillisecond);
 
+/// The same rooms with every face cut into triangles, which are then the polygons.
 void hemisphere_of_triangles(benchmark::State& state) {
-  static std::map<std::int64_t, Question> questions;
-  const auto n = state.range(0);
-  auto place = questions.find(n);
-  if (place == questions.end()) {
-    place =
-        questions
-            .try_emplace(n, cut_into_triangles(make_furnished_room(static_cast<std::uint32_t>(n), 1)), points_for(n))
-            .first;
-  }
-  measure(state, place->second);
+  static std::map<std::int64_t, Hemispheres> made;
+  const std::int64_t n = state.range(0);
+  if (!made.contains(n)) made.try_emplace(n, cut_into_triangles(furnished_room(n)), view_count(n));
+  measure(state, made.at(n));
 }
 BENCHMARK(hemisphere_of_triangles)
+    ->ArgName("polygons")
     ->Arg(500)
     ->Arg(5000)
     ->Arg(60000)
     ->UseManualTime()
-    ->Unit(benchmark::kMillisecond)
-    ->MinTime(2);
+    ->MinTime(1)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace exitance
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  try {
-    benchmark::RunSpecifiedBenchmarks();
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << '\n';
-    return 1;
-  }
+  return exitance::run_benchmarks(argc, argv);
 }

@@ -312,7 +312,7 @@ SampledFormFactor RaySampledVisibility::form_factor(const Receiver& receiver, co
   const double n = options_.replicates, mean = sum / n;
   const double variance =
       n > 1 ? std::fmax(sum_of_squares / n - mean * mean, 0.0) / (n - 1) : std::numeric_limits<double>::infinity();
-  return {F_unoccluded * mean, F_unoccluded * std::sqrt(variance)};
+  return {F_unoccluded * mean, F_unoccluded * std::sqrt(variance), F_unoccluded};
 }
 
 }  // namespace exitance

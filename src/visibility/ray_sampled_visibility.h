@@ -18,15 +18,17 @@ struct RayOptions {
   std::uint32_t packet = 16;     ///< rays cast together: 8 or 16
   bool robust = true;            ///< no leaks between triangles that share an edge
   /// By how much of the scene's radius both ends of a ray are moved off their surfaces, along the normals, lest the ray
-  /// hits the surface it starts from or goes to. The default is 16 roundings of a coordinate; what lies nearer to a
-  /// surface than this is not seen as in front of it.
-  double offset = 0x1p-20;
+  /// hits the surface it starts from or goes to; ≥ 0. What lies nearer to a surface than this is not seen as in front
+  /// of it, and F errs in proportion to it. The default is four roundings of a coordinate: with half as much rays begin
+  /// to hit their own surfaces.
+  double offset = 0x1p-22;
 };
 
 /// A form factor as rays estimate it.
 struct SampledFormFactor {
   double F = 0;
   double standard_error = 0;  ///< from the spread of the replicates; infinite when there is only one
+  double F_unoccluded = 0;    ///< what it would be without occluders, by Lambert's formula
 };
 
 /// The occluding facets of a soup as Embree's triangles, in float coordinates relative to the middle of the scene. Any
