@@ -1,17 +1,18 @@
 #pragma once
 // The polygons of a scene, cut into facets, with what does not depend on the point of view: merged vertices, planes,
-// neighbours, coplanar contacts and a spatial index. Immutable, so any number of threads may look at it.
+// neighbours, shells, coplanar contacts and a spatial index. Immutable, so any number of threads may look at it.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "geometry/polygon.h"
+#include "geometry/predicates.h"
 #include "geometry/spatial_index.h"
 
 namespace exitance {
 
-/// How a polygon takes part (DESIGN: coplanar and overlapping).
+/// How a polygon takes part.
 enum class Role : std::uint8_t {
   patch,       ///< emits, receives and occludes; a later patch lying in its plane and facing the same way covers it
   sheet,       ///< occludes only; covers every patch in whose plane it lies
@@ -21,20 +22,25 @@ enum class Role : std::uint8_t {
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 
-/// A facet's plane: 0 = normal · (v − origin). The normal is the rounded cross product of two edges (not of unit length),
-/// each component of it wrong by at most normal_error.
+/// A facet's plane: 0 = normal · (v − origin), up to rounding.
 struct Plane {
-  Vec3 origin;
-  Vec3 normal;
-  double normal_error = 0;
-  std::uint32_t a = kNone, b = kNone, c = kNone;  ///< three vertices, counter-clockwise, that define the exact plane
+  Vec3 origin;              ///< one of the vertices
+  Vec3 normal;              ///< rounded cross product of two edges, not of unit length
+  double normal_error = 0;  ///< bound of the error of each of the normal's components
+  PlanePoints points;       ///< three vertices, counter-clockwise, that define the plane exactly
+  int axis = -1;            ///< 0, 1, 2: exactly perpendicular to that axis; −1: not
+  int axis_sign = 0;        ///< of the exact normal along that axis
 };
 
+/// Sign of v against the plane, exact: +1 in front.
+int side_of(const Plane& plane, const Vec3& v, StageCounts& counts);
+
+/// A convex, exactly planar piece of a polygon.
 struct Facet {
-  std::uint32_t first = 0;    ///< of its corners
+  std::uint32_t first = 0;  ///< of its corners
   std::uint32_t count = 0;
-  std::uint32_t polygon = 0;  ///< index of the input polygon
-  std::uint32_t shell = kNone;  ///< closed shell (outward faces) it belongs to; kNone when it belongs to none
+  std::uint32_t polygon = 0;    ///< index of the input polygon
+  std::uint32_t shell = kNone;  ///< the shell it belongs to, if any
   Plane plane;
 };
 
@@ -43,46 +49,59 @@ struct Corner {
   std::uint32_t neighbour = kNone;  ///< the one facet across the edge from this corner to the next; kNone: none, or several
 };
 
-/// A closed, consistently outward manifold shell; seen from outside its box, its back faces hide nothing that its front
-/// faces do not.
-struct Shell {
-  Box box;
-};
-
 class PolygonSoup {
  public:
-  /// Takes polygons without defects other than zero area. roles: one for each polygon, or empty for all `patch`.
+  /// Takes polygons without defects other than zero area (those have no facets). roles: one for each polygon, or empty
+  /// for all `patch`.
   explicit PolygonSoup(std::span<const Polygon> polygons, std::span<const Role> roles = {});
+  PolygonSoup(const PolygonSoup&) = delete;  // planes point into vertices()
+  PolygonSoup& operator=(const PolygonSoup&) = delete;
+  PolygonSoup(PolygonSoup&&) = default;
+  PolygonSoup& operator=(PolygonSoup&&) = default;
 
   std::span<const Vec3> vertices() const { return vertices_; }
   std::span<const Facet> facets() const { return facets_; }
-  std::span<const Corner> corners() const { return corners_; }
   std::span<const Corner> corners(const Facet& f) const { return {corners_.data() + f.first, f.count}; }
-  std::span<const Shell> shells() const { return shells_; }
-  Role role(std::uint32_t polygon) const { return roles_[polygon]; }
-  std::size_t polygon_count() const { return roles_.size(); }
 
-  /// The facets of polygon p are facets()[first_facet(p)] … facets()[first_facet(p + 1) − 1].
+  std::size_t polygon_count() const { return roles_.size(); }
+  Role role(std::uint32_t polygon) const { return roles_[polygon]; }
+
+  /// The facets of polygon p are first_facet(p) … first_facet(p + 1) − 1.
   std::uint32_t first_facet(std::uint32_t polygon) const { return first_facet_[polygon]; }
 
-  /// Facets that lie exactly in the plane of facet f and overlap its box, f itself and its polygon's others excepted.
+  /// Boxes of the shells, closed manifolds that bound a solid (shell.h). A ray from outside the box meets a front face of
+  /// the shell before any back face: back faces hide nothing that front faces do not.
+  std::span<const Box> shells() const { return shells_; }
+
+  /// Facets of other polygons that lie exactly in the plane of facet f and touch its box, ascending.
   std::span<const std::uint32_t> coplanar(std::uint32_t f) const {
     return {coplanar_.data() + coplanar_first_[f], coplanar_.data() + coplanar_first_[f + 1]};
   }
+
   /// Whether facet t, one of coplanar(f), covers f where they overlap.
   bool covers(std::uint32_t t, std::uint32_t f) const;
 
-  const SpatialIndex& index() const { return index_; }  ///< of the facets that occlude
+  /// Of all facets that occlude; its items are facets.
+  const SpatialIndex& index() const { return index_; }
+
+  /// Largest absolute coordinate.
+  double extent() const { return extent_; }
 
  private:
+  void add_facets(std::span<const Polygon> polygons);
+  void find_neighbours();
+  void find_shells();
+  void find_coplanar();
+
   std::vector<Vec3> vertices_;
   std::vector<Facet> facets_;
   std::vector<Corner> corners_;
-  std::vector<Shell> shells_;
+  std::vector<Box> shells_;
   std::vector<Role> roles_;
   std::vector<std::uint32_t> first_facet_;
   std::vector<std::uint32_t> coplanar_, coplanar_first_;
   SpatialIndex index_;
+  double extent_ = 0;
 };
 
 }  // namespace exitance

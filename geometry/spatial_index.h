@@ -1,7 +1,8 @@
 #pragma once
-// A hierarchy of boxes around facets, searched by convex cones and by boxes.
+// A hierarchy of boxes around facets, searched by convex regions and by boxes.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -11,6 +12,7 @@
 
 namespace exitance {
 
+/// An axis-parallel box; empty until extended.
 struct Box {
   Vec3 lower{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
              std::numeric_limits<double>::infinity()};
@@ -32,6 +34,41 @@ struct Box {
     return lower.x <= b.upper.x && b.lower.x <= upper.x && lower.y <= b.upper.y && b.lower.y <= upper.y &&
            lower.z <= b.upper.z && b.lower.z <= upper.z;
   }
+};
+
+/// The half-space normal · v ≥ offset. Whoever makes it lowers the offset by its own rounding errors.
+struct HalfSpace {
+  Vec3 normal;
+  double offset = 0;
+};
+
+/// Bounding volume hierarchy with four children a node, split by the surface area heuristic. Searches are conservative:
+/// nothing that meets the region is left out, some that does not may be returned. Items with an empty box are never found. The
+/// same boxes give the same tree.
+class SpatialIndex {
+ public:
+  SpatialIndex() = default;
+  explicit SpatialIndex(std::span<const Box> boxes);
+
+  /// Appends to `found` every item whose box reaches into each of the half-spaces.
+  void find(std::span<const HalfSpace> region, std::vector<std::uint32_t>& found) const;
+
+  /// Appends to `found` every item whose box touches or overlaps the box.
+  void find(const Box& box, std::vector<std::uint32_t>& found) const;
+
+  /// Around everything; empty for no boxes.
+  const Box& bounds() const { return bounds_; }
+
+ private:
+  struct alignas(64) Node {
+    std::array<std::array<double, 4>, 3> lower, upper;  ///< [axis][child]
+    std::array<std::int32_t, 4> child;  ///< ≥ 0: a node; < 0: item −1 − child; unused places have an empty box
+  };
+
+  std::int32_t build(std::span<std::uint32_t> items, std::span<const Box> boxes, int depth);
+
+  std::vector<Node> nodes_;
+  Box bounds_;
 };
 
 }  // namespace exitance

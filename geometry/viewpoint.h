@@ -28,52 +28,58 @@ struct Source {
 enum class Side : std::uint8_t { front, back, edge_on };
 
 enum class Visibility : std::uint8_t {
-  away,     ///< below the receiver's horizon, edge-on, or an excluded polygon: nothing can be seen
+  away,     ///< below the receiver's horizon, edge-on, or the receiver's own polygon: nothing can be seen
   open,     ///< no occluder reaches between: closed form
-  partial,  ///< occluders were clipped away
-  blocked   ///< nothing left
+  partial,  ///< occluders hide some of it
+  blocked   ///< nothing is left
 };
 
-/// Form factor from a point to the visible part of one side of a source, and a proven bound of its error.
+/// Form factor from a point to the visible part of a source, and a proven bound of its error.
 struct PointFormFactor {
   double F = 0;
   double error = 0;
-  Side side = Side::front;  ///< which side of the source the point sees; F to a back counts in closure only
+  Side side = Side::edge_on;  ///< which side of the source the point sees; energy comes from the front only
   Visibility visibility = Visibility::away;
 };
 
-/// A stretch of the boundary of a visible region, in the source's plane, the region to its left seen from the point.
+/// A stretch of the boundary of a visible region, in the source's plane; the region lies to its left as seen from the point.
 struct BoundaryPiece {
   Vec3 from, to;
-  bool of_source = false;  ///< lies on the source's own boundary (or on the horizon), else on an occluder's shadow
+  bool of_source = false;  ///< lies on the source's own boundary or on the horizon, else on an occluder's shadow
 };
 
-/// One point of view. Holds scratch memory: one object a thread, used for many points.
+/// One point of view. Holds scratch memory: one object a thread, used for many points of one soup, which must outlive it.
 class Viewpoint {
  public:
   explicit Viewpoint(const PolygonSoup& soup);
   ~Viewpoint();
   Viewpoint(Viewpoint&&) noexcept;
+  Viewpoint& operator=(Viewpoint&&) noexcept;
 
   /// Sets the point. Throws std::invalid_argument on a zero or non-finite normal and on a non-finite point.
   void look_from(const Receiver& receiver);
 
-  /// Whether something lying in the receiver's own plane covers it (only for a receiver on a facet): it then sees nothing.
+  /// Whether something that lies in the receiver's own plane covers it (only a receiver on a facet can be): it sees nothing.
   bool covered() const;
 
-  /// F from the point to the visible part of the source, from whichever side it is seen. The proven error is at most
-  /// `tolerance` where extended precision (200 bits) can reach that.
+  /// F from the point to the visible part of the source, from whichever side it is seen. Where double precision cannot
+  /// prove an error within `tolerance`, it is computed again with 80 digits; what can be proven then is in `error`.
   PointFormFactor form_factor(const Source& source, double tolerance = 1e-13);
 
-  /// The boundary of the visible part of the source, closed loops' pieces in no particular order.
+  /// The boundary of the visible part of the source above the horizon, in no particular order.
   std::vector<BoundaryPiece> visible_region(const Source& source);
+
+  /// How the predicates were decided, since this object was made.
+  const StageCounts& stage_counts() const;
+  /// Questions that double precision could not answer to the tolerance.
+  std::uint64_t extended_count() const;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
 
-/// Twice-signed area [m²] enclosed by boundary pieces: the area of a visible region.
+/// Area enclosed by boundary pieces [m²].
 double area(std::span<const BoundaryPiece> region);
 
 }  // namespace exitance

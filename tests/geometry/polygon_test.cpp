@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <random>
 
 namespace exitance {
 namespace {
@@ -85,6 +86,55 @@ TEST(FindDefect, FindsSelfIntersections) {
       EXPECT_EQ(defect(turned), PolygonDefect::self_intersecting) << name << " from vertex " << i + 1;
     }
   }
+}
+
+int side(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double turn = cross(b - a, c - a).z;  // exact on small integers
+  return turn > 0 ? 1 : turn < 0 ? -1 : 0;
+}
+
+bool holds(const Vec3& a, const Vec3& b, const Vec3& p) {
+  return side(a, b, p) == 0 && std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= p.y &&
+         p.y <= std::max(a.y, b.y);
+}
+
+bool meet(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return holds(a, b, c) || holds(a, b, d) || holds(c, d, a) || holds(c, d, b) ||
+         (side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0);
+}
+
+/// Every edge against every other.
+bool is_simple(const std::vector<Vec3>& loop) {
+  const std::size_t n = loop.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 &a = loop[i], &b = loop[(i + 1) % n], &after = loop[(i + 2) % n];
+    if (holds(a, b, after) || holds(b, after, a)) return false;
+    for (std::size_t j = i + 2; j < n && (j + 1) % n != i; ++j) {
+      if (meet(a, b, loop[j], loop[(j + 1) % n])) return false;
+    }
+  }
+  return true;
+}
+
+TEST(FindDefect, AgreesWithEveryEdgeAgainstEveryOther) {
+  std::mt19937_64 random(5);
+  int simple = 0;
+  for (int round = 0; round < 50000; ++round) {
+    std::vector<Vec3> loop(4 + random() % 6);
+    for (Vec3& p : loop) p = {static_cast<double>(random() % 5), static_cast<double>(random() % 5), 0};
+    bool repeats = false, straight = true;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      repeats = repeats || loop[i] == loop[(i + 1) % loop.size()];
+      straight = straight && side(loop[0], loop[1], loop[i]) == 0;
+    }
+    if (repeats) continue;
+    const PolygonDefect expected = straight          ? PolygonDefect::zero_area
+                                   : is_simple(loop) ? PolygonDefect::none
+                                                     : PolygonDefect::self_intersecting;
+    ASSERT_EQ(defect(loop), expected) << testing::PrintToString(loop.size()) << " vertices, round " << round;
+    if (expected == PolygonDefect::none) ++simple;
+  }
+  EXPECT_GT(simple, 1000);
 }
 
 TEST(FindDefect, FindsMisplacedHoles) {

@@ -1,0 +1,75 @@
+#pragma once
+// Lambert's form factor from a point to a region, summed along the region's boundary.
+
+#include <boost/math/constants/constants.hpp>
+
+#include "geometry/visible_region.h"
+
+namespace exitance {
+
+/// F = 1/2π Σ θ (n·m): over the arcs of the boundary, θ the angle that an arc subtends at the point and m the unit normal of
+/// the plane through point and arc, towards the region (Lambert 1760). Add arcs, then ask.
+template <class Real>
+class LambertSum {
+ public:
+  explicit LambertSum(const Vec3& normal) : n_{Real(normal.x), Real(normal.y), Real(normal.z)}, n_length_(norm(n_)) {}
+
+  void add(const Arc<Real>& arc) {
+    using std::atan2;
+    using std::fabs;
+    const Real u = roundoff<Real>();
+    const ConeSide<Real>& side = *arc.side;
+    const ConeCorner<Real>&p = arc.cone->corners[side.from], &q = arc.cone->corners[side.to];
+    const bool of_vertices = side.exact.kind == ViewPlane::Kind::edge;
+    const Vec<Real> e = of_vertices ? difference<Real>(*q.exact.a, *p.exact.a) : q.w - p.w;
+    const Real e_length = norm(e);
+    const Vec<Real> w0 = p.w + arc.t0 * e, w1 = p.w + arc.t1 * e;
+    const Real length0 = norm(w0), length1 = norm(w1);
+    // For an edge of input vertices |p × e| is the length of the side's normal.
+    const Real C = of_vertices ? side.length : norm(cross(p.w, e));
+    const Real S = (arc.t1 - arc.t0) * C, D = dot(w0, w1);
+    const Real theta = atan2(S, D);
+    const Real g = dot(n_, side.m) / (n_length_ * side.length);
+    const Real term = g * theta;
+
+    // δw: three roundings on parts no longer than |p| + |e|, and what the corners carry. δC: that of the side's normal,
+    // or 7 u |p||e| and the corners'. δθ ≤ (δS + δD) / (|w0||w1|), as S² + D² = |w0|²|w1|²; 1.1 covers the second order, which the
+    // comparison at the end keeps small. δg ≤ 1.1 δm / |m| and 8 roundings.
+    const Real corner = p.error + q.error;
+    const Real dw = 4 * u * (p.length + e_length) + corner;
+    const Real dC = of_vertices ? side.error : Real(8 * u * p.length * e_length + corner * (e_length + p.length));
+    const Real product = length0 * length1;
+    Real dtheta = ((arc.t1 - arc.t0) * dC + 4 * u * S) / product + dw * (1 / length0 + 1 / length1) + 8 * u;
+    // An end that is wrong by δt moves by |dw/dt| δt across, seen under C / |w|².
+    dtheta += C * (arc.t0_error / (length0 * length0) + arc.t1_error / (length1 * length1));
+    dtheta *= Real(1.1);
+    const Real dg = Real(1.1) * side.error / side.length + 8 * u;
+    const bool second_order_is_small = 20 * dw < (length0 < length1 ? length0 : length1) &&
+                                       20 * side.error < side.length &&
+                                       20 * arc.t0_error * e_length < length0 && 20 * arc.t1_error * e_length < length1;
+    ++arcs_;
+    if (!second_order_is_small) {  // nothing is known; an arc is shorter than π
+      error_ += boost::math::constants::pi<Real>();
+      return;
+    }
+    sum_ = arc.of_source ? sum_ + term : sum_ - term;
+    error_ += fabs(g) * dtheta + theta * dg + 4 * u * fabs(term);
+    size_ += fabs(term);
+  }
+
+  std::size_t arcs() const { return arcs_; }
+  Real value() const { return sum_ / (2 * boost::math::constants::pi<Real>()); }
+  /// Proven bound of |value − true value|.
+  Real error() const {
+    return (error_ + (static_cast<double>(arcs_) + 4) * roundoff<Real>() * size_) /
+           (2 * boost::math::constants::pi<Real>());
+  }
+
+ private:
+  Vec<Real> n_;
+  Real n_length_;
+  Real sum_{0}, error_{0}, size_{0};
+  std::size_t arcs_ = 0;
+};
+
+}  // namespace exitance

@@ -1,0 +1,201 @@
+#include "geometry/polygon_soup.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "geometry/facets.h"
+#include "geometry/shell.h"
+
+namespace exitance {
+namespace {
+
+struct HashPoint {
+  std::size_t operator()(const Vec3& p) const {
+    std::uint64_t h = 0;
+    for (const double c : {p.x, p.y, p.z}) {
+      h = (h ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15u;  // −0 + 0 is 0, which it equals
+      h ^= h >> 32;
+    }
+    return h;
+  }
+};
+
+std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+  return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
+}
+
+/// Plane through three corners of a convex loop that are not collinear: the triple (first, k, k + 1) of largest area.
+Plane plane_of(std::span<const Vec3> vertices, std::span<const Corner> corners) {
+  const Vec3& a = vertices[corners[0].vertex];
+  std::size_t best = 1;
+  double largest = -1;
+  for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
+    const Vec3 n = cross(vertices[corners[k].vertex] - a, vertices[corners[k + 1].vertex] - a);
+    const double size = std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z);
+    if (size > largest) {
+      largest = size;
+      best = k;
+    }
+  }
+  const Vec3& b = vertices[corners[best].vertex];
+  const Vec3& c = vertices[corners[best + 1].vertex];
+  const Vec3 p = b - a, q = c - a;
+  Plane plane;
+  plane.origin = a;
+  plane.normal = cross(p, q);
+  // |p_i q_j| + |p_j q_i| ≤ |p||q|, each product with two roundings of differences, one of its own and one of the
+  // subtraction: 4.01 u |p||q|; 5 covers the rounding of the norms.
+  plane.normal_error = 5 * kRoundoff * norm(p) * norm(q);
+  plane.points = {&a, &b, &c};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::all_of(corners.begin(), corners.end(),
+                    [&](const Corner& k) { return vertices[k.vertex][axis] == a[axis]; })) {
+      plane.axis = axis;
+      Vec3 above = a;
+      above[axis] = std::nextafter(a[axis], std::numeric_limits<double>::infinity());
+      StageCounts counts;
+      plane.axis_sign = orientation(a, b, c, above, counts);
+    }
+  }
+  return plane;
+}
+
+}  // namespace
+
+int side_of(const Plane& plane, const Vec3& v, StageCounts& counts) {
+  if (plane.axis < 0) return orientation(*plane.points.a, *plane.points.b, *plane.points.c, v, counts);
+  const double c = v[plane.axis], p = plane.origin[plane.axis];
+  ++counts.filter;
+  return c > p ? plane.axis_sign : c < p ? -plane.axis_sign : 0;
+}
+
+PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role> roles)
+    : roles_(roles.begin(), roles.end()) {
+  if (roles.empty()) roles_.assign(polygons.size(), Role::patch);
+  if (roles_.size() != polygons.size()) throw std::invalid_argument("PolygonSoup: as many roles as polygons, or none");
+  add_facets(polygons);
+  find_neighbours();
+  find_shells();
+  find_coplanar();
+}
+
+void PolygonSoup::add_facets(std::span<const Polygon> polygons) {
+  std::unordered_map<Vec3, std::uint32_t, HashPoint> vertex_of;
+  first_facet_.push_back(0);
+  for (std::uint32_t p = 0; p < polygons.size(); ++p) {
+    for (const Loop& loop : cut_into_facets(polygons[p])) {
+      Facet f;
+      f.first = static_cast<std::uint32_t>(corners_.size());
+      f.count = static_cast<std::uint32_t>(loop.size());
+      f.polygon = p;
+      for (const Vec3& point : loop) {
+        const auto [place, is_new] = vertex_of.try_emplace(point, static_cast<std::uint32_t>(vertices_.size()));
+        if (is_new) {
+          vertices_.push_back(point);
+          for (int axis = 0; axis < 3; ++axis) extent_ = std::max(extent_, std::fabs(point[axis]));
+        }
+        corners_.push_back({place->second, kNone});
+      }
+      facets_.push_back(f);
+    }
+    first_facet_.push_back(static_cast<std::uint32_t>(facets_.size()));
+  }
+  std::vector<Box> boxes(facets_.size());
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    facets_[f].plane = plane_of(vertices_, corners(facets_[f]));
+    if (roles_[facets_[f].polygon] == Role::unoccluding) continue;
+    for (const Corner& c : corners(facets_[f])) boxes[f].extend(vertices_[c.vertex]);
+  }
+  index_ = SpatialIndex(boxes);
+}
+
+void PolygonSoup::find_neighbours() {
+  struct Use {
+    std::uint32_t facet, corner, from;
+  };
+  std::unordered_map<std::uint64_t, std::vector<Use>> uses;
+  uses.reserve(corners_.size());
+  for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+    if (roles_[facets_[f].polygon] == Role::unoccluding) continue;
+    const auto c = corners(facets_[f]);
+    for (std::uint32_t k = 0; k < c.size(); ++k) {
+      const std::uint32_t from = c[k].vertex, to = c[(k + 1) % c.size()].vertex;
+      uses[edge_key(from, to)].push_back({f, facets_[f].first + k, from});
+    }
+  }
+  for (const auto& [key, use] : uses) {
+    if (use.size() != 2 || use[0].from == use[1].from) continue;
+    corners_[use[0].corner].neighbour = use[1].facet;
+    corners_[use[1].corner].neighbour = use[0].facet;
+  }
+}
+
+void PolygonSoup::find_shells() {
+  std::vector<bool> visited(facets_.size(), false);
+  std::vector<std::uint32_t> component;
+  for (std::uint32_t seed = 0; seed < facets_.size(); ++seed) {
+    if (visited[seed]) continue;
+    component.assign(1, seed);
+    visited[seed] = true;
+    bool closed = true;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    Box box;
+    for (std::size_t k = 0; k < component.size(); ++k) {
+      const auto c = corners(facets_[component[k]]);
+      for (std::size_t i = 0; i < c.size(); ++i) {
+        box.extend(vertices_[c[i].vertex]);
+        if (i >= 2) triangles.push_back({c[0].vertex, c[i - 1].vertex, c[i].vertex});
+        if (c[i].neighbour == kNone) {
+          closed = false;
+        } else if (!visited[c[i].neighbour]) {
+          visited[c[i].neighbour] = true;
+          component.push_back(c[i].neighbour);
+        }
+      }
+    }
+    if (!closed || triangles.size() < 4 || !bounds_solid(vertices_, triangles)) continue;
+    for (const auto f : component) facets_[f].shell = static_cast<std::uint32_t>(shells_.size());
+    shells_.push_back(box);
+  }
+}
+
+void PolygonSoup::find_coplanar() {
+  StageCounts counts;
+  coplanar_first_.assign(1, 0);
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+    Box box;
+    for (const Corner& c : corners(facets_[f])) box.extend(vertices_[c.vertex]);
+    near.clear();
+    index_.find(box, near);
+    std::sort(near.begin(), near.end());
+    const Plane& plane = facets_[f].plane;
+    for (const auto t : near) {
+      if (facets_[t].polygon == facets_[f].polygon) continue;
+      const auto in_plane = [&](const Corner& c) { return side_of(plane, vertices_[c.vertex], counts) == 0; };
+      const auto c = corners(facets_[t]);
+      if (std::all_of(c.begin(), c.end(), in_plane)) coplanar_.push_back(t);
+    }
+    coplanar_first_.push_back(static_cast<std::uint32_t>(coplanar_.size()));
+  }
+}
+
+bool PolygonSoup::covers(std::uint32_t t, std::uint32_t f) const {
+  const bool same_facing = dot(facets_[t].plane.normal, facets_[f].plane.normal) > 0;
+  switch (roles_[facets_[t].polygon]) {
+    case Role::patch:
+      return same_facing && facets_[t].polygon > facets_[f].polygon;
+    case Role::sheet:
+      return true;
+    case Role::solid_face:
+      return !same_facing;
+    default:
+      return false;
+  }
+}
+
+}  // namespace exitance

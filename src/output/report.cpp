@@ -1,0 +1,75 @@
+#include "src/output/report.h"
+
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include "src/output/whole_file.h"
+
+namespace exitance {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json manifest(const Report& r) {
+  return {{"version", r.manifest.version},     {"commit", r.manifest.commit}, {"compiler", r.manifest.compiler},
+          {"libraries", r.manifest.libraries}, {"threads", r.threads},        {"seed", r.seed},
+          {"scene_hash", r.scene_hash},        {"options", r.options}};
+}
+
+}  // namespace
+
+std::string to_json(const Report& r) {
+  const Json json = {{"scene", r.scene},
+                     {"surfaces", r.surfaces},
+                     {"patches", r.patches},
+                     {"elements", r.elements},
+                     {"bands", r.bands},
+                     {"unit", r.unit},
+                     {"method", r.method},
+                     {"receivers", r.receivers},
+                     {"visibility", r.visibility},
+                     {"converged", r.converged},
+                     {"iterations", r.iterations},
+                     {"residual", r.residual},
+                     {"error_bound", r.error_bound},
+                     {"energy_balance_defect", r.energy_balance_defect},
+                     {"closure_max_defect", or_null(r.closure_max_defect)},
+                     {"covered_points", r.covered_points},
+                     {"reciprocity_max_defect", or_null(r.reciprocity_max_defect)},
+                     {"B_min", r.B_min},
+                     {"B_max", r.B_max},
+                     {"pairs",
+                      {{"facing_away", r.pairs.facing_away},
+                       {"open", r.pairs.open},
+                       {"blocked", r.pairs.blocked},
+                       {"partial", r.pairs.partial}}},
+                     {"predicate_stages", r.predicate_stages},
+                     {"seconds",
+                      {{"load", r.seconds.load},
+                       {"form_factors", r.seconds.form_factors},
+                       {"solve", r.seconds.solve},
+                       {"output", r.seconds.output},
+                       {"total", r.seconds.total}}},
+                     {"peak_memory_bytes", r.peak_memory_bytes},
+                     {"warnings", r.warnings},
+                     {"manifest", manifest(r)}};
+  // Names in files need not be UTF-8.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_report(const std::filesystem::path& path, const Report& report) {
+  write_whole_file(path, [&](std::ostream& out) { out << to_json(report); });
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace exitance

@@ -1,0 +1,237 @@
+#include "tests/geometry/visibility_oracle.h"
+
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Polygon_set_2.h>
+
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "geometry/facets.h"
+
+namespace exitance {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using Rational = Kernel::FT;
+using Point = Kernel::Point_3;
+using Vector = Kernel::Vector_3;
+using ExactLoop = std::vector<Point>;
+using FlatPolygon = CGAL::Polygon_2<Kernel>;
+using Region = CGAL::Polygon_set_2<Kernel>;
+using Real = boost::multiprecision::cpp_bin_float_100;
+
+Point exact(const Vec3& p) {
+  return {p.x, p.y, p.z};
+}
+
+ExactLoop exact(const Loop& loop) {
+  ExactLoop points;
+  for (const Vec3& p : loop) points.push_back(exact(p));
+  return points;
+}
+
+/// value(p) = normal · (p − origin).
+struct HalfSpace {
+  Point origin;
+  Vector normal;
+
+  Rational value(const Point& p) const { return normal * (p - origin); }
+};
+
+HalfSpace plane_of(const ExactLoop& facet) {
+  for (std::size_t i = 2; i < facet.size(); ++i) {
+    const Vector normal = CGAL::cross_product(facet[1] - facet[0], facet[i] - facet[0]);
+    if (normal != CGAL::NULL_VECTOR) return {facet[0], normal};
+  }
+  throw std::logic_error("a facet without area");
+}
+
+/// The part of a convex loop where value ≥ 0.
+ExactLoop clip(const ExactLoop& loop, const HalfSpace& half_space) {
+  ExactLoop kept;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Point &p = loop[i], &q = loop[(i + 1) % loop.size()];
+    const Rational at_p = half_space.value(p), at_q = half_space.value(q);
+    if (at_p >= 0) kept.push_back(p);
+    if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) kept.push_back(p + (at_p / (at_p - at_q)) * (q - p));
+  }
+  return kept;
+}
+
+/// The half-spaces whose intersection is the cone from the apex over a convex loop.
+std::vector<HalfSpace> cone_over(const ExactLoop& loop, const Point& apex) {
+  std::vector<HalfSpace> sides;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Point &p = loop[i], &q = loop[(i + 1) % loop.size()];
+    if (p == q) continue;
+    Vector normal = CGAL::cross_product(p - apex, q - apex);
+    const bool flip = std::any_of(loop.begin(), loop.end(), [&](const Point& r) { return normal * (r - apex) < 0; });
+    sides.push_back({apex, flip ? -normal : normal});
+  }
+  return sides;
+}
+
+/// Coordinates in a plane: the points of space without their coordinate `axis`.
+struct Chart {
+  HalfSpace plane;
+  int axis;
+
+  explicit Chart(const HalfSpace& p) : plane(p), axis(p.normal.x() != 0 ? 0 : p.normal.y() != 0 ? 1 : 2) {}
+
+  Kernel::Point_2 flat(const Point& p) const { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
+
+  Point lift(const Kernel::Point_2& p) const {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    Rational coordinates[3];
+    coordinates[u] = p.x();
+    coordinates[v] = p.y();
+    coordinates[axis] = plane.origin[axis] -
+                        (plane.normal[u] * (p.x() - plane.origin[u]) + plane.normal[v] * (p.y() - plane.origin[v])) /
+                            plane.normal[axis];
+    return {coordinates[0], coordinates[1], coordinates[2]};
+  }
+
+  /// A convex loop, counter-clockwise in the chart, without its collinear vertices; empty if it has no area.
+  FlatPolygon flat(const ExactLoop& loop) const {
+    std::vector<Kernel::Point_2> points;
+    for (const Point& p : loop) points.push_back(flat(p));
+    const auto is_corner = [](const auto& a, const auto& b, const auto& c) { return !CGAL::collinear(a, b, c); };
+    for (bool changed = true; changed && points.size() > 2;) {
+      changed = false;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::size_t n = points.size();
+        if (is_corner(points[(i + n - 1) % n], points[i], points[(i + 1) % n])) continue;
+        points.erase(points.begin() + static_cast<std::ptrdiff_t>(i));
+        changed = true;
+        break;
+      }
+    }
+    FlatPolygon polygon;
+    if (points.size() < 3) return polygon;
+    for (const auto& p : points) polygon.push_back(p);
+    if (polygon.is_clockwise_oriented()) polygon.reverse_orientation();
+    return polygon;
+  }
+};
+
+Real real(const Rational& number) {
+  std::ostringstream stream;
+  stream << number.exact();
+  const std::string text = stream.str();
+  const auto slash = text.find('/');
+  if (slash == std::string::npos) return Real(text);
+  return Real(text.substr(0, slash)) / Real(text.substr(slash + 1));
+}
+
+struct RealVector {
+  Real x, y, z;
+};
+
+RealVector real(const Vector& v) {
+  return {real(v.x()), real(v.y()), real(v.z())};
+}
+Real dot(const RealVector& a, const RealVector& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+RealVector cross(const RealVector& a, const RealVector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// Lambert's sum around a loop: Σ θ (n · m), m the unit normal of the plane through the point and an edge.
+Real contour_sum(const FlatPolygon& loop, const Chart& chart, const Point& x, const RealVector& unit_normal) {
+  std::vector<RealVector> rays;
+  for (const auto& p : loop.container()) rays.push_back(real(chart.lift(p) - x));
+  Real sum = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const RealVector &a = rays[i], &b = rays[(i + 1) % rays.size()];
+    const RealVector across = cross(a, b);
+    const Real length = sqrt(dot(across, across));
+    if (length != 0) sum += atan2(length, dot(a, b)) * dot(unit_normal, across) / length;
+  }
+  return sum;
+}
+
+/// An occluder facet's shadow on the source, as a convex loop in the source's plane.
+ExactLoop shadow(const ExactLoop& facet, const HalfSpace& source_plane, const std::vector<HalfSpace>& cone,
+                 const Point& x) {
+  if (plane_of(facet).value(x) == 0) return {};
+  ExactLoop between = clip(facet, source_plane);
+  for (const HalfSpace& side : cone) between = clip(between, side);
+  // Within the cone every point is nearer to the source's plane than x, so it projects to a finite one.
+  const Rational height = source_plane.value(x);
+  for (Point& p : between) p = x + (height / (height - source_plane.value(p))) * (p - x);
+  return between;
+}
+
+bool covers(const ExactLoop& facet, bool solid, const HalfSpace& source_plane) {
+  return !solid || plane_of(facet).normal * source_plane.normal < 0;
+}
+
+Region visible_part(const ExactLoop& source, const Chart& chart, const Point& x,
+                    const std::vector<Occluder>& occluders) {
+  const HalfSpace& plane = chart.plane;
+  const auto cone = cone_over(source, x);
+  std::vector<FlatPolygon> shadows;
+  for (const Occluder& occluder : occluders) {
+    for (const Polygon& face : occluder.faces) {
+      for (const Loop& loop : cut_into_facets(face)) {
+        const ExactLoop facet = exact(loop);
+        const bool coplanar =
+            std::all_of(facet.begin(), facet.end(), [&](const Point& p) { return plane.value(p) == 0; });
+        if (coplanar && !covers(facet, occluder.solid, plane)) continue;
+        const FlatPolygon flat = chart.flat(coplanar ? facet : shadow(facet, plane, cone, x));
+        if (!flat.is_empty()) shadows.push_back(flat);
+      }
+    }
+  }
+  Region visible(chart.flat(source));
+  Region hidden;
+  hidden.join(shadows.begin(), shadows.end());
+  visible.difference(hidden);
+  return visible;
+}
+
+}  // namespace
+
+OracleAnswer oracle_form_factor(const Vec3& point, const Vec3& direction, const Polygon& source,
+                                const std::vector<Occluder>& occluders) {
+  const Point x = exact(point);
+  const Vector normal = exact(direction) - CGAL::ORIGIN;
+  RealVector unit_normal = real(normal);
+  const Real length = sqrt(dot(unit_normal, unit_normal));
+  unit_normal = {unit_normal.x / length, unit_normal.y / length, unit_normal.z / length};
+
+  Real contour = 0, area = 0;
+  for (const Loop& loop : cut_into_facets(source)) {
+    const ExactLoop facet = exact(loop);
+    const Chart chart(plane_of(facet));
+    if (chart.plane.value(x) <= 0) continue;
+    const ExactLoop above = clip(facet, {x, normal});
+    if (chart.flat(above).is_empty()) continue;
+
+    // Counter-clockwise in the chart is so from the front, too, if the normal points up the chart's axis; seen from
+    // there the rotation is against the one Lambert's sum counts as positive.
+    const int side = chart.plane.normal[chart.axis] > 0 ? -1 : 1;
+    const RealVector facet_normal = real(chart.plane.normal);
+    const Real stretch = sqrt(dot(facet_normal, facet_normal)) / abs(real(chart.plane.normal[chart.axis]));
+    const Region visible = visible_part(above, chart, x, occluders);
+    std::vector<CGAL::Polygon_with_holes_2<Kernel>> parts;
+    visible.polygons_with_holes(std::back_inserter(parts));
+    for (const auto& part : parts) {
+      contour += side * contour_sum(part.outer_boundary(), chart, x, unit_normal);
+      area += stretch * real(part.outer_boundary().area());
+      for (const FlatPolygon& hole : part.holes()) {  // clockwise
+        contour += side * contour_sum(hole, chart, x, unit_normal);
+        area += stretch * real(hole.area());
+      }
+    }
+  }
+  const Real F = contour / (2 * boost::math::constants::pi<Real>());
+  return {F.convert_to<long double>(), area.convert_to<long double>()};
+}
+
+}  // namespace exitance

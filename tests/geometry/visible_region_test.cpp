@@ -1,0 +1,98 @@
+// The kernel against the oracle, in every degenerate position.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "geometry/polygon_soup.h"
+#include "geometry/viewpoint.h"
+#include "tests/geometry/degenerate_cases.h"
+#include "tests/geometry/visibility_oracle.h"
+
+namespace exitance {
+namespace {
+
+struct Scene {
+  std::vector<Polygon> polygons;
+  std::vector<Role> roles;
+};
+
+/// The source is polygon 0.
+Scene scene_of(const PointCase& question) {
+  Scene scene{{question.source}, {Role::unoccluding}};
+  for (const Occluder& occluder : question.occluders) {
+    for (const Polygon& face : occluder.faces) {
+      scene.polygons.push_back(face);
+      scene.roles.push_back(occluder.solid ? Role::solid_face : Role::sheet);
+    }
+  }
+  return scene;
+}
+
+struct KernelAnswer {
+  long double F = 0, error = 0, visible_area = 0;
+};
+
+KernelAnswer ask_kernel(const PointCase& question) {
+  const Scene scene = scene_of(question);
+  const PolygonSoup soup(scene.polygons, scene.roles);
+  Viewpoint viewpoint(soup);
+  viewpoint.look_from({question.point, question.normal});
+  KernelAnswer answer;
+  for (std::uint32_t facet = soup.first_facet(0); facet < soup.first_facet(1); ++facet) {
+    const PointFormFactor part = viewpoint.form_factor({facet, {}});
+    if (part.side != Side::front) continue;
+    answer.F += part.F;
+    answer.error += part.error;
+    answer.visible_area += area(viewpoint.visible_region({facet, {}}));
+  }
+  return answer;
+}
+
+/// A region's corners are rounded and come without a bound, so its area is held to what tells a wrong region from a
+/// right one.
+double area_tolerance(const PointCase& question) {
+  double extent = 0, perimeter = 0;
+  const auto& loop = question.source.outer;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    extent = std::max({extent, std::abs(loop[i].x), std::abs(loop[i].y), std::abs(loop[i].z)});
+    perimeter += norm(loop[(i + 1) % loop.size()] - loop[i]);
+  }
+  return 1e-11 * perimeter * extent + 1e-6 * norm(area_vector(question.source));
+}
+
+std::string family_of(const PointCase& question) {
+  return question.name.substr(0, question.name.find('/'));
+}
+
+std::vector<std::string> families() {
+  std::vector<std::string> names;
+  for (const PointCase& question : degenerate_cases()) names.push_back(family_of(question));
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+class DegenerateFamily : public testing::TestWithParam<std::string> {};
+
+TEST_P(DegenerateFamily, AgreesWithTheOracle) {
+  for (const PointCase& question : degenerate_cases()) {
+    if (family_of(question) != GetParam()) continue;
+    const OracleAnswer truth = oracle_form_factor(question.point, question.normal, question.source, question.occluders);
+    const KernelAnswer answer = ask_kernel(question);
+    const long double error = std::abs(answer.F - truth.F);
+    EXPECT_LE(error, 1e-12L) << question.name << ": " << answer.F << " instead of " << truth.F;
+    EXPECT_LE(error, answer.error) << question.name << ": the bound does not hold";
+    EXPECT_LE(answer.error, 1e-11L) << question.name << ": the bound is no help";
+    EXPECT_LE(std::abs(answer.visible_area - truth.visible_area), area_tolerance(question))
+        << question.name << ": area " << answer.visible_area << " instead of " << truth.visible_area;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(VisibleRegion, DegenerateFamily, testing::ValuesIn(families()),
+                         [](const auto& family) { return family.param; });
+
+}  // namespace
+}  // namespace exitance
