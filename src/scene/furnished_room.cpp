@@ -7,6 +7,8 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace exitance {
 namespace {
@@ -53,6 +55,7 @@ struct Place {
   double radius, height;  ///< at most
 };
 
+/// In the order of the scene's materials.
 enum MaterialIndex : std::uint32_t {
   wall,
   floor_boards,
@@ -71,12 +74,23 @@ class Furnisher {
  public:
   Furnisher(std::uint32_t polygons, std::uint64_t seed) : random_(seed) {
     scene_.name = "Furnished room of " + std::to_string(polygons) + " polygons, seed " + std::to_string(seed);
-    scene_.materials = {{"wall", {0.75, 0.72, 0.65}, {0, 0, 0}},     {"floor_boards", {0.45, 0.32, 0.22}, {0, 0, 0}},
-                        {"ceiling", {0.8, 0.8, 0.8}, {0, 0, 0}},     {"wood", {0.6, 0.42, 0.26}, {0, 0, 0}},
-                        {"dark_wood", {0.35, 0.25, 0.2}, {0, 0, 0}}, {"fabric", {0.5, 0.2, 0.22}, {0, 0, 0}},
-                        {"paper", {0.7, 0.7, 0.62}, {0, 0, 0}},      {"card", {0.25, 0.4, 0.55}, {0, 0, 0}},
-                        {"ceramic", {0.3, 0.6, 0.5}, {0, 0, 0}},     {"stone", {0.55, 0.55, 0.55}, {0, 0, 0}},
-                        {"lamp", {0.5, 0.5, 0.5}, {40, 36, 30}}};
+    for (const auto& [name, rho] : {std::pair<const char*, std::vector<double>>{"wall", {0.75, 0.72, 0.65}},
+                                    {"floor_boards", {0.45, 0.32, 0.22}},
+                                    {"ceiling", {0.8, 0.8, 0.8}},
+                                    {"wood", {0.6, 0.42, 0.26}},
+                                    {"dark_wood", {0.35, 0.25, 0.2}},
+                                    {"fabric", {0.5, 0.2, 0.22}},
+                                    {"paper", {0.7, 0.7, 0.62}},
+                                    {"card", {0.25, 0.4, 0.55}},
+                                    {"ceramic", {0.3, 0.6, 0.5}},
+                                    {"stone", {0.55, 0.55, 0.55}},
+                                    {"lamp", {0.5, 0.5, 0.5}}}) {
+      Material& material = scene_.materials.emplace_back();
+      material.name = name;
+      material.rho = rho;
+      material.E = {0, 0, 0};
+    }
+    scene_.materials[lamp].E = {40, 36, 30};
     const std::uint32_t groups = std::clamp(polygons / 100, 4u, 100u);
     columns_ = static_cast<std::uint32_t>(std::sqrt(groups));
     rows_ = groups / columns_;

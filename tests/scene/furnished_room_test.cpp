@@ -16,6 +16,7 @@
 #include <tuple>
 #include <vector>
 
+#include "src/scene/scene_check.h"
 #include "src/scene/write_obj.h"
 
 namespace exitance {
@@ -245,6 +246,10 @@ TEST(FurnishedRoomBits, SameSeedSameBitsAndAnotherSeedAnotherRoom) {
 TEST(FurnishedRoomBits, RefusesSizesItCannotMake) {
   EXPECT_THROW(make_furnished_room(99, 1), std::invalid_argument);
   EXPECT_THROW(make_furnished_room(1000001, 1), std::invalid_argument);
+}
+
+TEST_P(FurnishedRoom, IsClosedWithItsContacts) {
+  EXPECT_TRUE(is_closed(make_furnished_room(GetParam(), 7)));
 }
 
 TEST(WriteObj, ReadsBackToTheSameBits) {

@@ -25,7 +25,9 @@ Point key(const Vec3& p) {
 
 Scene scene_of(const std::vector<Polygon>& polygons) {
   Scene scene;
-  scene.materials = {{"grey", {0.5, 0.5, 0.5}, {0, 0, 0}}};
+  Material& grey = scene.materials.emplace_back();
+  grey.rho = {0.5, 0.5, 0.5};
+  grey.E = {0, 0, 0};
   scene.objects = {{"all", ""}};
   for (const Polygon& polygon : polygons) {
     Surface surface;

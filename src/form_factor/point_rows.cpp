@@ -1,0 +1,185 @@
+#include "src/form_factor/point_rows.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace exitance {
+namespace {
+
+/// One thread's work: a point of view and the row it fills.
+class RowMaker {
+ public:
+  RowMaker(const PatchMesh& mesh, const PolygonSoup& soup) : mesh_(mesh), soup_(soup), view_(soup) {}
+
+  struct Row {
+    std::vector<std::uint32_t> column;
+    std::vector<double> F, F_error;
+    PointRowStatistics statistics;
+  };
+
+  Row row(std::size_t element) {
+    Row row;
+    const StageCounts stages_before = view_.stage_counts();
+    const std::uint64_t extended_before = view_.extended_count();
+    look_from(element);
+    if (view_.covered()) {
+      row.statistics.covered_points = 1;
+      return row;
+    }
+    double front = 0, back = 0;
+    for (std::uint32_t p = 0; p < mesh_.patches.size(); ++p) {
+      const PointFormFactor f = to_patch(p, back, row.statistics.pairs);
+      if (f.F > 0) {
+        row.column.push_back(p);
+        row.F.push_back(f.F);
+        row.F_error.push_back(f.error);
+        front += f.F;
+      }
+    }
+    if (front == 0) {
+      row.statistics.covered_points = 1;
+    } else {
+      row.statistics.closure_max_defect = std::fabs(front + back + obstructions() - 1);
+    }
+    row.statistics.stages = difference(view_.stage_counts(), stages_before);
+    row.statistics.extended = view_.extended_count() - extended_before;
+    return row;
+  }
+
+  PointFormFactor entry(std::size_t element, std::size_t patch) {
+    look_from(element);
+    if (view_.covered()) return {};
+    double back = 0;
+    PairCounts pairs;
+    return to_patch(static_cast<std::uint32_t>(patch), back, pairs);
+  }
+
+ private:
+  static StageCounts difference(const StageCounts& a, const StageCounts& b) {
+    return {a.filter - b.filter, a.interval - b.interval, a.exact - b.exact};
+  }
+
+  void look_from(std::size_t element) {
+    const Element& e = mesh_.elements[element];
+    view_.look_from({e.sample, e.normal, e.facet});
+  }
+
+  /// F to the patch's front, the sum of its pieces'; adds what is seen of its back.
+  PointFormFactor to_patch(std::uint32_t patch, double& back, PairCounts& pairs) {
+    PointFormFactor sum;
+    bool open = false, blocked = false, partial = false;
+    for (const PatchPiece& piece : mesh_.pieces_of(mesh_.patches[patch])) {
+      const PointFormFactor f = view_.form_factor({piece.facet, mesh_.loop(piece)}, kPointTolerance);
+      if (f.side == Side::back) back += f.F;
+      if (f.side != Side::front) continue;
+      sum.F += f.F;
+      sum.error += f.error;
+      open = open || f.visibility == Visibility::open;
+      blocked = blocked || f.visibility == Visibility::blocked;
+      partial = partial || f.visibility == Visibility::partial;
+    }
+    if (partial || (open && blocked)) {
+      ++pairs.partial;
+    } else if (open) {
+      ++pairs.open;
+    } else if (blocked) {
+      ++pairs.blocked;
+    } else {
+      ++pairs.facing_away;
+    }
+    return sum;
+  }
+
+  double obstructions() {
+    double seen = 0;
+    for (std::uint32_t f = 0; f < soup_.facets().size(); ++f) {
+      const Role role = soup_.role(soup_.facets()[f].polygon);
+      if (role == Role::sheet || role == Role::solid_face) seen += view_.form_factor({f, {}}, kPointTolerance).F;
+    }
+    return seen;
+  }
+
+  const PatchMesh& mesh_;
+  const PolygonSoup& soup_;
+  Viewpoint view_;
+};
+
+using RowMakers = tbb::enumerable_thread_specific<RowMaker>;
+
+}  // namespace
+
+PairCounts& PairCounts::operator+=(const PairCounts& other) {
+  facing_away += other.facing_away;
+  open += other.open;
+  blocked += other.blocked;
+  partial += other.partial;
+  return *this;
+}
+
+PointRowStatistics& PointRowStatistics::operator+=(const PointRowStatistics& other) {
+  pairs += other.pairs;
+  stages += other.stages;
+  extended += other.extended;
+  covered_points += other.covered_points;
+  closure_max_defect = std::max(closure_max_defect, other.closure_max_defect);
+  return *this;
+}
+
+PointRows point_rows(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t first, std::size_t last,
+                     const Progress& progress) {
+  PointRows result;
+  result.F.columns = static_cast<std::uint32_t>(mesh.patches.size());
+  RowMakers makers([&] { return RowMaker(mesh, soup); });
+  // Blocks are small enough to report progress between them and large enough to keep all threads busy.
+  constexpr std::size_t kBlock = 256;
+  std::vector<RowMaker::Row> rows;
+  for (std::size_t begin = first; begin < last; begin += kBlock) {
+    const std::size_t end = std::min(last, begin + kBlock);
+    rows.assign(end - begin, {});
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 1), [&](const auto& range) {
+      RowMaker& maker = makers.local();
+      for (std::size_t e = range.begin(); e < range.end(); ++e) rows[e - begin] = maker.row(e);
+    });
+    for (const auto& row : rows) {
+      result.F.column.insert(result.F.column.end(), row.column.begin(), row.column.end());
+      result.F.F.insert(result.F.F.end(), row.F.begin(), row.F.end());
+      result.F.F_error.insert(result.F.F_error.end(), row.F_error.begin(), row.F_error.end());
+      result.F.row_first.push_back(result.F.F.size());
+      result.statistics += row.statistics;
+    }
+    if (progress) progress(static_cast<double>(end - first) / static_cast<double>(last - first), "form factors");
+  }
+  return result;
+}
+
+void point_column(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t patch, std::span<double> F,
+                  std::span<double> F_error) {
+  RowMakers makers([&] { return RowMaker(mesh, soup); });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.elements.size(), 256), [&](const auto& range) {
+    RowMaker& maker = makers.local();
+    for (std::size_t e = range.begin(); e < range.end(); ++e) {
+      const PointFormFactor f = maker.entry(e, patch);
+      F[e] = f.F;
+      F_error[e] = f.error;
+    }
+  });
+}
+
+double expected_row_length(const PatchMesh& mesh, const PolygonSoup& soup) {
+  constexpr std::size_t kSample = 8;
+  const std::size_t n = mesh.elements.size();
+  if (n == 0) return 0;
+  std::size_t entries = 0, rows = 0;
+  for (std::size_t k = 0; k < std::min(n, kSample); ++k) {
+    const std::size_t e = n * (2 * k + 1) / (2 * std::min(n, kSample));
+    entries += point_rows(mesh, soup, e, e + 1).F.F.size();
+    ++rows;
+  }
+  return static_cast<double>(entries) / static_cast<double>(rows);
+}
+
+}  // namespace exitance

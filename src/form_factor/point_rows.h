@@ -1,0 +1,56 @@
+#pragma once
+// Form factors from the sample points of elements to all patches, by exact visibility.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/viewpoint.h"
+#include "src/form_factor/form_factor_matrix.h"
+#include "src/output/progress.h"
+#include "src/scene/patch_mesh.h"
+
+namespace exitance {
+
+/// How pairs of element and patch ended.
+struct PairCounts {
+  std::uint64_t facing_away = 0;  ///< the patch's front is not turned to the point, or it lies below the horizon
+  std::uint64_t open = 0, blocked = 0, partial = 0;
+
+  PairCounts& operator+=(const PairCounts& other);
+};
+
+struct PointRowStatistics {
+  PairCounts pairs;
+  StageCounts stages;
+  std::uint64_t extended = 0;  ///< pairs that needed extended precision
+  /// Points that see no front of anything: covered by, or buried in, a contact. They have no closure defect.
+  std::uint64_t covered_points = 0;
+  /// Largest |front + back − 1| of all points that see something, front and back sides of patches and of surfaces that
+  /// only obstruct: the defect of a closed scene, without meaning in an open one.
+  double closure_max_defect = 0;
+
+  PointRowStatistics& operator+=(const PointRowStatistics& other);
+};
+
+struct PointRows {
+  FormFactorMatrix F;  ///< elements × patches; only what exceeds its error
+  PointRowStatistics statistics;
+};
+
+/// Proven error that double precision must reach, else extended precision is asked.
+inline constexpr double kPointTolerance = 1e-12;
+
+/// Rows of the elements `first` … `last` − 1. In parallel; any number of threads gives the same bits. The mesh must be of
+/// the soup's scene (make_patch_mesh).
+PointRows point_rows(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t first, std::size_t last,
+                     const Progress& progress = {});
+
+/// Form factor F[e] from every element to one patch, with error bounds: a column, for shooting without a matrix.
+void point_column(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t patch, std::span<double> F,
+                  std::span<double> F_error);
+
+/// Entries of a row expected per element, from a sample of elements: for estimates of memory. Between 0 and patches.
+double expected_row_length(const PatchMesh& mesh, const PolygonSoup& soup);
+
+}  // namespace exitance
