@@ -24,7 +24,9 @@ struct FlatFacet {
   Projection projection;  // its own
 };
 
-Kernel::Point_3 point(const Vec3& p) { return {p.x, p.y, p.z}; }
+Kernel::Point_3 point(const Vec3& p) {
+  return {p.x, p.y, p.z};
+}
 
 std::vector<FlatFacet> make_facets(std::span<const Polygon> polygons) {
   std::vector<FlatFacet> facets;
@@ -59,7 +61,8 @@ bool in_one_plane(const FlatFacet& f, const FlatFacet& g) {
   const std::size_t n = f.loop.size();
   while (turn(f.projection, f.loop[k], f.loop[(k + 1) % n], f.loop[(k + 2) % n]) == 0) ++k;
   const auto a = point(f.loop[k]), b = point(f.loop[(k + 1) % n]), c = point(f.loop[(k + 2) % n]);
-  return std::ranges::all_of(g.loop, [&](const Vec3& p) { return CGAL::orientation(a, b, c, point(p)) == CGAL::COPLANAR; });
+  return std::ranges::all_of(g.loop,
+                             [&](const Vec3& p) { return CGAL::orientation(a, b, c, point(p)) == CGAL::COPLANAR; });
 }
 
 // +1 when a convex loop runs counter-clockwise in the projection, −1 when clockwise.
@@ -71,8 +74,8 @@ int rotation_sense(Projection projection, const Loop& loop) {
   return 0;
 }
 
-// Whether no point of `other` lies on the inner side of some edge of `loop`. For convex loops in one plane this, one way or
-// the other, is the same as having no area in common.
+// Whether no point of `other` lies on the inner side of some edge of `loop`. For convex loops in one plane this, one
+// way or the other, is the same as having no area in common.
 bool separated_by_edge(Projection projection, const Loop& loop, int sense, const Loop& other) {
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Vec3& a = loop[i];

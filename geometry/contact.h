@@ -15,10 +15,10 @@ struct CoplanarOverlap {
   bool same_facing = false;    ///< the fronts point the same way (one lies on the other), else against each other
 };
 
-/// All pairs of polygons that overlap with positive area in exactly the same plane, ascending by a, then b. Decided exactly
-/// on the input coordinates: touching along an edge or at a point is no overlap, nor is a gap of one ulp. Polygons that are
-/// not exactly planar take part as their facets; one pair may then overlap facing both ways (folded polygons) and is given
-/// twice. Polygons of zero area overlap nothing. REQUIRES: no other defects (find_defect).
+/// All pairs of polygons that overlap with positive area in exactly the same plane, ascending by a, then b. Decided
+/// exactly on the input coordinates: touching along an edge or at a point is no overlap, nor is a gap of one ulp.
+/// Polygons that are not exactly planar take part as their facets; one pair may then overlap facing both ways (folded
+/// polygons) and is given twice. Polygons of zero area overlap nothing. REQUIRES: no other defects (find_defect).
 std::vector<CoplanarOverlap> coplanar_overlaps(std::span<const Polygon> polygons);
 
 }  // namespace exitance

@@ -16,7 +16,9 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Exact = CGAL::Exact_rational;
 
-Kernel::Point_3 point(const Vec3& p) { return {p.x, p.y, p.z}; }
+Kernel::Point_3 point(const Vec3& p) {
+  return {p.x, p.y, p.z};
+}
 
 // A stretch of an edge: from 0, its beginning, to 1, its end.
 using Stretch = std::pair<Exact, Exact>;

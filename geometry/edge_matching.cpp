@@ -15,10 +15,14 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-Kernel::Point_3 point(const Vec3& p) { return {p.x, p.y, p.z}; }
+Kernel::Point_3 point(const Vec3& p) {
+  return {p.x, p.y, p.z};
+}
 
 // Adding zero makes −0 into 0.
-auto order(const Vec3& p) { return std::tuple{p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
+auto order(const Vec3& p) {
+  return std::tuple{p.x + 0.0, p.y + 0.0, p.z + 0.0};
+}
 
 class DisjointSets {
  public:
@@ -46,7 +50,9 @@ void add_loop(const std::vector<Vec3>& loop, bool reversed, std::uint32_t polygo
   }
 }
 
-bool runs_up(const DirectedEdge& e) { return order(e.from) < order(e.to); }
+bool runs_up(const DirectedEdge& e) {
+  return order(e.from) < order(e.to);
+}
 
 // Edges between the same two points, whichever way they run, stand together.
 void sort_by_ends(std::vector<DirectedEdge>& edges) {
@@ -164,9 +170,8 @@ EdgeMatching match_edges(std::span<const Polygon> polygons) {
     auto& rest = net_direction(group) == 0 ? crowded : unbalanced;
     rest.insert(rest.end(), group.begin(), group.end());
   });
-  unite_pairs(cut_at_vertices(unbalanced), [&](std::span<const DirectedEdge> group) {
-    crowded.insert(crowded.end(), group.begin(), group.end());
-  });
+  unite_pairs(cut_at_vertices(unbalanced),
+              [&](std::span<const DirectedEdge> group) { crowded.insert(crowded.end(), group.begin(), group.end()); });
 
   EdgeMatching matching;
   sort_by_ends(crowded);

@@ -16,17 +16,17 @@ struct DirectedEdge {
 };
 
 struct EdgeMatching {
-  /// The piece of connected surface that each polygon belongs to, counted from 0 in the order of first polygons. Polygons
-  /// are connected where their edges cancel (see below), not where pieces only touch.
+  /// The piece of connected surface that each polygon belongs to, counted from 0 in the order of first polygons.
+  /// Polygons are connected where their edges cancel (see below), not where pieces only touch.
   std::vector<std::uint32_t> piece;
   std::uint32_t pieces = 0;
   std::vector<DirectedEdge> open;  ///< what no other edge of its piece cancels
 };
 
-/// Two edges cancel where they run along each other in opposite directions. Edges are equal only if their coordinates are
-/// (−0 equals 0). A vertex that lies exactly on an edge cuts it (T-junction), so a long edge may be cancelled by several
-/// short ones. Where more than two edges meet, those of one piece cancel first: two boxes that touch along an edge stay two
-/// pieces. Repeated vertices make no edge. Takes n log n in the edges. REQUIRES: finite coordinates.
+/// Two edges cancel where they run along each other in opposite directions. Edges are equal only if their coordinates
+/// are (−0 equals 0). A vertex that lies exactly on an edge cuts it (T-junction), so a long edge may be cancelled by
+/// several short ones. Where more than two edges meet, those of one piece cancel first: two boxes that touch along an
+/// edge stay two pieces. Repeated vertices make no edge. Takes n log n in the edges. REQUIRES: finite coordinates.
 EdgeMatching match_edges(std::span<const Polygon> polygons);
 
 /// All edges: the outer loops', and the holes', turned round where needed so that the polygon lies to the left.

@@ -151,6 +151,8 @@ class PieceFinder {
 
 }  // namespace
 
-SurfacePieces find_surface_pieces(std::span<const Polygon> polygons) { return PieceFinder(polygons).find(); }
+SurfacePieces find_surface_pieces(std::span<const Polygon> polygons) {
+  return PieceFinder(polygons).find();
+}
 
 }  // namespace exitance

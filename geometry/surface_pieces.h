@@ -14,8 +14,9 @@ struct SurfacePiece {
   std::vector<std::uint32_t> polygons;  ///< ascending
   double area = 0;                      ///< [m²]
   bool closed = false;                  ///< every edge is cancelled or ends on the surface of another piece (contact)
-  /// Of a closed piece [m³]: positive when the fronts look out, negative when they look in (a room). 0 for open pieces and
-  /// for those that bound nothing (sheets of two sides). Where a piece ends on others the missing part is taken as a cone.
+  /// Of a closed piece [m³]: positive when the fronts look out, negative when they look in (a room). 0 for open pieces
+  /// and for those that bound nothing (sheets of two sides). Where a piece ends on others the missing part is taken as
+  /// a cone.
   double volume = 0;
   bool enclosed = false;  ///< lies in front of another closed piece that looks in
   bool encloses = false;  ///< another piece lies inside this closed one
@@ -32,9 +33,10 @@ struct SurfacePieces {
   std::vector<OpenEdge> open_edges;
 };
 
-/// Edges and contacts are decided exactly (edge_matching.h, edge_contact.h). A piece counts as enclosed when at least half
-/// of its area has its front within the other one, seen just above the middles of its facets; so a table on the floor, a rug
-/// on it, and a box outside that leans against the wall are told apart. REQUIRES: no defects but zero area (find_defect).
+/// Edges and contacts are decided exactly (edge_matching.h, edge_contact.h). A piece counts as enclosed when at least
+/// half of its area has its front within the other one, seen just above the middles of its facets; so a table on the
+/// floor, a rug on it, and a box outside that leans against the wall are told apart. REQUIRES: no defects but zero area
+/// (find_defect).
 SurfacePieces find_surface_pieces(std::span<const Polygon> polygons);
 
 }  // namespace exitance

@@ -1,9 +1,9 @@
 #include "src/scene/face_list.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "src/scene/input_error.h"
 
@@ -34,10 +34,11 @@ Polygon polygon_of(const FaceList& list, std::size_t face_number) {
   for (std::size_t i = face.first; i < face.first + face.count; ++i) {
     const std::int64_t vertex = list.corners[i];
     if (vertex < 0 || vertex >= std::ssize(list.vertices)) {
-      throw InputError(list.file, face.line,
-                       fmt::format("{} names vertex {}, but the file has {} (numbered from {}); correct it, or the file is "
-                                   "truncated",
-                                   name, vertex + list.numbering_from, list.vertices.size(), list.numbering_from));
+      throw InputError(
+          list.file, face.line,
+          fmt::format("{} names vertex {}, but the file has {} (numbered from {}); correct it, or the file is "
+                      "truncated",
+                      name, vertex + list.numbering_from, list.vertices.size(), list.numbering_from));
     }
     polygon.outer.push_back(list.vertices[static_cast<std::size_t>(vertex)]);
   }
@@ -60,10 +61,8 @@ Scene to_scene(FaceList list, bool keep_faults) {
   scene.surfaces.reserve(list.faces.size());
   for (std::size_t i = 0; i < list.faces.size(); ++i) {
     const Face& face = list.faces[i];
-    scene.surfaces.push_back({.polygon = polygon_of(list, i),
-                              .material = face.material,
-                              .object = face.object,
-                              .line = face.line});
+    scene.surfaces.push_back(
+        {.polygon = polygon_of(list, i), .material = face.material, .object = face.object, .line = face.line});
   }
   return scene;
 }

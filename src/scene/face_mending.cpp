@@ -1,10 +1,10 @@
 #include "src/scene/face_mending.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace exitance {
 namespace {
@@ -55,8 +55,10 @@ std::optional<std::vector<Polygon>> assemble(std::vector<Loop> loops, const Vec3
   }
   if (polygons.empty() || (!holes.empty() && polygons.size() > 1)) return std::nullopt;
   polygons.front().holes = std::move(holes);
-  std::erase_if(polygons, [](const Polygon& p) { return p.holes.empty() && find_defect(p) == PolygonDefect::zero_area; });
-  const bool sound = std::ranges::all_of(polygons, [](const Polygon& p) { return find_defect(p) == PolygonDefect::none; });
+  std::erase_if(polygons,
+                [](const Polygon& p) { return p.holes.empty() && find_defect(p) == PolygonDefect::zero_area; });
+  const bool sound =
+      std::ranges::all_of(polygons, [](const Polygon& p) { return find_defect(p) == PolygonDefect::none; });
   return sound ? std::optional(std::move(polygons)) : std::nullopt;
 }
 
@@ -96,13 +98,14 @@ void mend_faces(Scene& scene) {
   }
   scene.surfaces = std::move(surfaces);
   if (mended.count > 0) {
-    scene.warnings.push_back(fmt::format("{}: {} faces whose boundary crosses or touches itself were cut into simple ones "
-                                         "(this is the first)",
-                                         mended.first, mended.count));
+    scene.warnings.push_back(
+        fmt::format("{}: {} faces whose boundary crosses or touches itself were cut into simple ones "
+                    "(this is the first)",
+                    mended.first, mended.count));
   }
   if (flat.count > 0) {
-    scene.warnings.push_back(fmt::format("{}: {} faces have no area and count for nothing (this is the first)", flat.first,
-                                         flat.count));
+    scene.warnings.push_back(
+        fmt::format("{}: {} faces have no area and count for nothing (this is the first)", flat.first, flat.count));
   }
 }
 

@@ -1,11 +1,11 @@
 #include "src/scene/material_check.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "src/scene/input_error.h"
 
@@ -33,8 +33,10 @@ void drop_unused(Scene& scene) {
 
 void define(Material& m, std::vector<std::string>& warnings) {
   if (m.rho.empty()) {
-    const std::string what = m.name.empty() ? "faces without a material" : fmt::format("material '{}' has no reflectance:", m.name);
-    warnings.push_back(fmt::format("{}{} get rho {} and emit nothing unless it says so", place(m), what, kDefaultReflectance));
+    const std::string what =
+        m.name.empty() ? "faces without a material" : fmt::format("material '{}' has no reflectance:", m.name);
+    warnings.push_back(
+        fmt::format("{}{} get rho {} and emit nothing unless it says so", place(m), what, kDefaultReflectance));
     if (m.name.empty()) m.name = "default";
     m.rho = {kDefaultReflectance};
   }
@@ -44,23 +46,26 @@ void define(Material& m, std::vector<std::string>& warnings) {
 void refuse_out_of_range(const Material& m) {
   for (const double rho : m.rho) {
     if (rho >= 0 && rho < 1) continue;
-    throw InputError(m.file, m.line,
-                     fmt::format("material '{}' has reflectance {}, which must be at least 0 and below 1; lower it", m.name, rho));
+    throw InputError(
+        m.file, m.line,
+        fmt::format("material '{}' has reflectance {}, which must be at least 0 and below 1; lower it", m.name, rho));
   }
   for (const double E : m.E) {
     if (E >= 0 && std::isfinite(E)) continue;
-    throw InputError(m.file, m.line,
-                     fmt::format("material '{}' has emission {}, which must be at least 0 and finite; correct it", m.name, E));
+    throw InputError(
+        m.file, m.line,
+        fmt::format("material '{}' has emission {}, which must be at least 0 and finite; correct it", m.name, E));
   }
 }
 
 void broadcast(std::vector<double>& values, std::uint32_t bands, const Material& m) {
   if (values.size() == 1) values.resize(bands, values[0]);
   if (values.size() == bands) return;
-  throw InputError(m.file, m.line,
-                   fmt::format("material '{}' has {} bands where others have {}; give all of them one number or the same "
-                               "number of bands",
-                               m.name, values.size(), bands));
+  throw InputError(
+      m.file, m.line,
+      fmt::format("material '{}' has {} bands where others have {}; give all of them one number or the same "
+                  "number of bands",
+                  m.name, values.size(), bands));
 }
 
 }  // namespace

@@ -13,10 +13,10 @@ enum class Emission {
 
 double to_exitance(double emission, Emission meaning);
 
-/// Drops materials that no surface uses; gives those without rho 0.5 and those without E 0, each time with a warning where
-/// that was not said on purpose; sets scene.bands to the longest list of any material (at least `bands`) and repeats single
-/// numbers for all bands. Throws InputError for rho outside [0, 1) and E negative or not finite (unless keep_faults), and
-/// for lists of different lengths.
+/// Drops materials that no surface uses; gives those without rho 0.5 and those without E 0, each time with a warning
+/// where that was not said on purpose; sets scene.bands to the longest list of any material (at least `bands`) and
+/// repeats single numbers for all bands. Throws InputError for rho outside [0, 1) and E negative or not finite (unless
+/// keep_faults), and for lists of different lengths.
 void settle_materials(Scene& scene, std::uint32_t bands, bool keep_faults);
 
 }  // namespace exitance

@@ -52,7 +52,9 @@ Matrix3 rotation(const Vec3& axis, double degrees) {
           Vec3{t * k.z * k.x - s * k.y, t * k.z * k.y + s * k.x, c + t * k.z * k.z}};
 }
 
-Matrix3 scaling(const Vec3& factors) { return {Vec3{factors.x, 0, 0}, Vec3{0, factors.y, 0}, Vec3{0, 0, factors.z}}; }
+Matrix3 scaling(const Vec3& factors) {
+  return {Vec3{factors.x, 0, 0}, Vec3{0, factors.y, 0}, Vec3{0, 0, factors.z}};
+}
 
 void place(Scene& scene, const Placement& placement) {
   const bool mirrors = placement.mirrors();

@@ -11,8 +11,8 @@ using Matrix3 = std::array<Vec3, 3>;  ///< rows
 
 Matrix3 product(const Matrix3& a, const Matrix3& b);
 
-/// p ↦ linear · p + translation. Coordinates are rounded once a product and a sum; moves that only permute, negate or scale
-/// by powers of two are exact.
+/// p ↦ linear · p + translation. Coordinates are rounded once a product and a sum; moves that only permute, negate or
+/// scale by powers of two are exact.
 struct Placement {
   Matrix3 linear{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
   Vec3 translation;
@@ -23,8 +23,8 @@ struct Placement {
   bool mirrors() const { return dot(linear[0], cross(linear[1], linear[2])) < 0; }
 };
 
-/// A turn about an axis through the origin, counter-clockwise seen against the axis. Multiples of 90° about a coordinate
-/// axis are exact. REQUIRES: the axis is finite and not zero.
+/// A turn about an axis through the origin, counter-clockwise seen against the axis. Multiples of 90° about a
+/// coordinate axis are exact. REQUIRES: the axis is finite and not zero.
 Matrix3 rotation(const Vec3& axis, double degrees);
 
 /// Scales along the coordinate axes.

@@ -1,18 +1,20 @@
 #include "src/scene/ply_header.h"
 
-#include <map>
-
 #include <fmt/format.h>
+
+#include <map>
 
 namespace exitance {
 namespace {
 
 PlyType read_type(TextCursor& text) {
   static const std::map<std::string_view, PlyType> kTypes = {
-      {"char", PlyType::int8},      {"int8", PlyType::int8},      {"uchar", PlyType::uint8},   {"uint8", PlyType::uint8},
-      {"short", PlyType::int16},    {"int16", PlyType::int16},    {"ushort", PlyType::uint16}, {"uint16", PlyType::uint16},
-      {"int", PlyType::int32},      {"int32", PlyType::int32},    {"uint", PlyType::uint32},   {"uint32", PlyType::uint32},
-      {"float", PlyType::float32},  {"float32", PlyType::float32}, {"double", PlyType::float64}, {"float64", PlyType::float64}};
+      {"char", PlyType::int8},      {"int8", PlyType::int8},       {"uchar", PlyType::uint8},
+      {"uint8", PlyType::uint8},    {"short", PlyType::int16},     {"int16", PlyType::int16},
+      {"ushort", PlyType::uint16},  {"uint16", PlyType::uint16},   {"int", PlyType::int32},
+      {"int32", PlyType::int32},    {"uint", PlyType::uint32},     {"uint32", PlyType::uint32},
+      {"float", PlyType::float32},  {"float32", PlyType::float32}, {"double", PlyType::float64},
+      {"float64", PlyType::float64}};
   const std::string_view name = text.next_token();
   const auto type = kTypes.find(name);
   if (type == kTypes.end()) text.fail(fmt::format("\"{}\" is not a type of PLY; correct the header", name));
@@ -42,7 +44,8 @@ PlyProperty read_property(TextCursor& text) {
   if (ahead.next_token() == "list") {
     text.next_token();
     property.count_type = read_type(text);
-    if (*property.count_type >= PlyType::float32) text.fail("a list's length must be of an integer type; correct the header");
+    if (*property.count_type >= PlyType::float32)
+      text.fail("a list's length must be of an integer type; correct the header");
   }
   property.type = read_type(text);
   property.name = text.next_token();
@@ -52,7 +55,8 @@ PlyProperty read_property(TextCursor& text) {
 }  // namespace
 
 PlyHeader read_ply_header(TextCursor& text) {
-  if (!text.next_line() || text.next_token() != "ply") text.fail("does not begin with \"ply\"; it is of another format");
+  if (!text.next_line() || text.next_token() != "ply")
+    text.fail("does not begin with \"ply\"; it is of another format");
   PlyHeader header;
   bool has_format = false;
   while (text.next_line()) {

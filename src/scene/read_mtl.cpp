@@ -8,7 +8,8 @@ namespace {
 // "Kd r [g b]": g and b equal r where they are left out.
 std::vector<double> read_colour(TextCursor& text) {
   const std::string_view first = text.next_token();
-  if (first == "spectral" || first == "xyz") text.fail("spectral and xyz colours are not supported; give red, green and blue");
+  if (first == "spectral" || first == "xyz")
+    text.fail("spectral and xyz colours are not supported; give red, green and blue");
   const double red = text.to_number(first);
   const std::string_view second = text.next_token();
   if (second.empty()) return {red, red, red};

@@ -1,5 +1,6 @@
 #pragma once
-// Material libraries of OBJ files (MTL): Kd is the reflectance, Ke the emission, the rest does not matter to a diffuse world.
+// Material libraries of OBJ files (MTL): Kd is the reflectance, Ke the emission, the rest does not matter to a diffuse
+// world.
 
 #include <filesystem>
 #include <vector>

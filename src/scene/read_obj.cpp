@@ -1,9 +1,9 @@
 #include "src/scene/read_obj.h"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "src/scene/read_mtl.h"
 #include "src/scene/text_cursor.h"
@@ -38,7 +38,8 @@ class ObjReader {
     while (text_.next_line()) read_statement(text_.next_token());
     name_objects();
     if (ignored_ > 0) {
-      list_.warnings.push_back(fmt::format("{}: {} lines and points are ignored; only faces count", list_.file, ignored_));
+      list_.warnings.push_back(
+          fmt::format("{}: {} lines and points are ignored; only faces count", list_.file, ignored_));
     }
     return std::move(list_);
   }
@@ -67,7 +68,9 @@ class ObjReader {
   }
 
   void read_face() {
-    Face face{.first = list_.corners.size(), .material = material_ == kNoMaterial ? material({}) : material_, .line = text_.line()};
+    Face face{.first = list_.corners.size(),
+              .material = material_ == kNoMaterial ? material({}) : material_,
+              .line = text_.line()};
     for (std::string_view token = text_.next_token(); !token.empty(); token = text_.next_token()) {
       list_.corners.push_back(corner(token));
     }
@@ -86,8 +89,8 @@ class ObjReader {
     const std::int64_t number = text_.to_integer(vertex);
     const std::int64_t index = number > 0 ? number - 1 : std::ssize(list_.vertices) + number;
     if (number == 0 || index < 0) {
-      text_.fail(fmt::format("vertex {} does not exist; vertices are numbered from 1 on, or from -1 back to -{}", number,
-                             list_.vertices.size()));
+      text_.fail(fmt::format("vertex {} does not exist; vertices are numbered from 1 on, or from -1 back to -{}",
+                             number, list_.vertices.size()));
     }
     return index;
   }
@@ -95,7 +98,8 @@ class ObjReader {
   std::uint32_t material(std::string_view name) {
     const std::uint32_t number = materials_.number(name);
     if (number == list_.materials.size()) {
-      list_.materials.push_back({.name = std::string(name), .rho = {}, .E = {}, .file = list_.file, .line = text_.line()});
+      list_.materials.push_back(
+          {.name = std::string(name), .rho = {}, .E = {}, .file = list_.file, .line = text_.line()});
     }
     return number;
   }
@@ -103,11 +107,14 @@ class ObjReader {
   void read_libraries(std::string_view names) {
     // One file whose name holds blanks, or several files.
     if (std::filesystem::exists(folder_ / names)) return read_library(std::string(names));
+    const std::uint32_t line = text_.line();
     TextCursor words(text_.file(), names);
     for (std::string_view name = words.token_across_lines(); !name.empty(); name = words.token_across_lines()) {
       if (!std::filesystem::exists(folder_ / name)) {
-        text_.fail(fmt::format("the material library {} is missing; put it there or delete this line",
-                               (folder_ / name).string()));
+        list_.warnings.push_back(
+            fmt::format("{}:{}: the material library {} is missing; put it there or delete this line", text_.file(),
+                        line, (folder_ / name).string()));
+        continue;
       }
       read_library(std::string(name));
     }

@@ -8,10 +8,11 @@
 
 namespace exitance {
 
-/// Reads v, f (all index forms, negative ones too), usemtl and mtllib (relative to the OBJ). An object is what `o` names;
-/// in a file without `o`, what `g` names. Texture coordinates, normals and smoothing are ignored; lines and points too, with
-/// a warning that counts them. A material that no library defines keeps its name and has no rho.
-/// Throws InputError for missing files, malformed numbers and vertex numbers that are zero or reach before the first.
+/// Reads v, f (all index forms, negative ones too), usemtl and mtllib (relative to the OBJ). An object is what `o`
+/// names; in a file without `o`, what `g` names. Texture coordinates, normals and smoothing are ignored; lines and
+/// points too, with a warning that counts them. A missing library is a warning too, as real meshes name some that were
+/// never delivered; a material that no library defines keeps its name and has no rho. Throws InputError for a missing
+/// file, malformed numbers and vertex numbers that are zero or reach before the first.
 FaceList read_obj(const std::filesystem::path& path, Emission emission);
 
 }  // namespace exitance

@@ -1,9 +1,9 @@
 #include "src/scene/read_off.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "src/scene/text_cursor.h"
 
@@ -64,7 +64,8 @@ FaceList read_off(const std::filesystem::path& path) {
     for (std::size_t k = 0; k < count; ++k) list.corners.push_back(text.to_integer(text.next_token()));
   }
   if (!first_token(text).empty()) {
-    list.warnings.push_back(fmt::format("{}:{}: more follows than the header announces; it is ignored", list.file, text.line()));
+    list.warnings.push_back(
+        fmt::format("{}:{}: more follows than the header announces; it is ignored", list.file, text.line()));
   }
   return list;
 }

@@ -1,8 +1,8 @@
 #include "src/scene/read_ply.h"
 
-#include <utility>
-
 #include <fmt/format.h>
+
+#include <utility>
 
 #include "src/scene/bytes.h"
 #include "src/scene/input_error.h"
@@ -72,7 +72,8 @@ class BinaryBody {
  private:
   template <typename T>
   T next() {
-    if (bytes_.size() - position_ < sizeof(T)) fail("the file ends before all that its header announces; it is truncated");
+    if (bytes_.size() - position_ < sizeof(T))
+      fail("the file ends before all that its header announces; it is truncated");
     const T value = load<T>(bytes_, position_, order_);
     position_ += sizeof(T);
     return value;
@@ -102,7 +103,8 @@ void read_vertex(Body& body, const PlyElement& element, FaceList& list) {
   Vec3 vertex;
   list.vertex_lines.push_back(body.line());
   for (const PlyProperty& property : element.properties) {
-    const bool coordinate = !property.count_type && property.name.size() == 1 && property.name >= "x" && property.name <= "z";
+    const bool coordinate =
+        !property.count_type && property.name.size() == 1 && property.name >= "x" && property.name <= "z";
     if (coordinate) {
       vertex[property.name[0] - 'x'] = body.real(property.type);
     } else {
@@ -155,7 +157,8 @@ void refuse_incomplete(const PlyHeader& header, const std::string& file) {
     }
   }
   if (coordinates != 3) throw InputError(file, 0, "the element \"vertex\" must have x, y and z; correct the header");
-  if (lists != 1) throw InputError(file, 0, "the element \"face\" must have one list \"vertex_indices\"; convert strips to faces");
+  if (lists != 1)
+    throw InputError(file, 0, "the element \"face\" must have one list \"vertex_indices\"; convert strips to faces");
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include "src/scene/read_stl.h"
 
-#include <utility>
-
 #include <fmt/format.h>
+
+#include <utility>
 
 #include "src/scene/bytes.h"
 #include "src/scene/input_error.h"
@@ -69,7 +69,8 @@ void read_text(TextCursor& text, FaceList& list) {
     const std::string name(text.rest_of_line());
     const auto object = static_cast<std::uint32_t>(list.objects.size());
     list.objects.push_back(name.empty() ? fmt::format("solid {}", object + 1) : name);
-    for (word = text.token_across_lines(); word == "facet"; word = text.token_across_lines()) read_facet(text, list, object);
+    for (word = text.token_across_lines(); word == "facet"; word = text.token_across_lines())
+      read_facet(text, list, object);
     if (word.empty()) text.fail("the file ends where \"facet\" or \"endsolid\" should follow; it is truncated");
     if (word != "endsolid") text.fail(fmt::format("\"{}\" stands where \"facet\" should; correct it", word));
     text.rest_of_line();
@@ -90,10 +91,11 @@ FaceList read_stl(const std::filesystem::path& path) {
     TextCursor from_start(list.file, bytes);
     read_text(from_start, list);
   } else {
-    throw InputError(list.file, 0,
-                     fmt::format("is neither text STL nor binary STL of its length ({} bytes, {} triangles announced); it is "
-                                 "truncated or of another format",
-                                 bytes.size(), triangles));
+    throw InputError(
+        list.file, 0,
+        fmt::format("is neither text STL nor binary STL of its length ({} bytes, {} triangles announced); it is "
+                    "truncated or of another format",
+                    bytes.size(), triangles));
   }
   return list;
 }

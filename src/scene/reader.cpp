@@ -25,8 +25,9 @@ Scene read_bare_mesh(const std::filesystem::path& path, const ReadOptions& optio
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options) {
   if (lower_extension(path) != ".toml") return read_bare_mesh(path, options);
   if (options.flip || options.two_sided) {
-    throw InputError(path.string(), 0,
-                     "flip and two-sided are for bare meshes; write flip = true or two_sided = true in the scene file's object");
+    throw InputError(
+        path.string(), 0,
+        "flip and two-sided are for bare meshes; write flip = true or two_sided = true in the scene file's object");
   }
   return read_scene_file(path, options.emission, options.keep_faults);
 }

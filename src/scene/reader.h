@@ -10,19 +10,19 @@ namespace exitance {
 
 struct ReadOptions {
   Emission emission = Emission::exitance;  ///< how MTL's Ke is meant, and E in a TOML file that does not say
-  bool flip = false;       ///< turn every face over; bare meshes only
-  bool two_sided = false;  ///< add every face again, turned over; bare meshes only (after flip)
+  bool flip = false;                       ///< turn every face over; bare meshes only
+  bool two_sided = false;                  ///< add every face again, turned over; bare meshes only (after flip)
   /// For checking: leave coordinates that are not finite, reflectances and emissions out of range and, in scene files,
   /// polygons that cross themselves in the scene, for check_scene to list, where they would be refused.
   bool keep_faults = false;
 };
 
-/// Reads .obj (with its .mtl), .ply, .off, .stl or .toml (see scene_file.h), whatever the case of the extension. Polygons
-/// stay polygons, in file order, coordinates the doubles nearest to what is written. Faces of meshes that cross themselves
-/// are mended and zero-area faces kept (see face_mending.h), materials that are missing are replaced by rho 0.5, E 0, each
-/// with a warning in the scene.
-/// Throws InputError for a missing or unreadable file, an unknown extension, a truncated mesh, malformed or non-finite
-/// numbers, a face with fewer than three vertices, a vertex number out of range, rho outside [0, 1), negative E.
+/// Reads .obj (with its .mtl), .ply, .off, .stl or .toml (see scene_file.h), whatever the case of the extension.
+/// Polygons stay polygons, in file order, coordinates the doubles nearest to what is written. Faces of meshes that
+/// cross themselves are mended and zero-area faces kept (see face_mending.h), materials that are missing are replaced
+/// by rho 0.5, E 0, each with a warning in the scene. Throws InputError for a missing or unreadable file, an unknown
+/// extension, a truncated mesh, malformed or non-finite numbers, a face with fewer than three vertices, a vertex number
+/// out of range, rho outside [0, 1), negative E.
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace exitance

@@ -15,13 +15,13 @@ struct Material {
   std::string name;
   std::vector<double> rho;  ///< reflectance, each in [0, 1)
   std::vector<double> E;    ///< self-emitted exitance [W/m²], each ≥ 0
-  std::string file;         ///< where it is defined; empty when in no file
+  std::string file = {};    ///< where it is defined; empty when in no file
   std::uint32_t line = 0;   ///< and in which line; 0 when unknown
 };
 
 /// One input polygon: the unit that occludes. Its front is where its outer loop runs counter-clockwise.
 struct Surface {
-  Polygon polygon;
+  Polygon polygon = {};
   std::uint32_t material = 0;
   std::uint32_t object = 0;
   bool obstruction_only = false;  ///< a pure occluder: hides, but neither emits nor receives

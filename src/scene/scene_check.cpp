@@ -24,7 +24,8 @@ struct KindText {
 
 // In the order of FindingKind.
 constexpr std::array<KindText, 14> kTexts{{
-    {"non_finite", Severity::error, "", "faces with a coordinate that is not a finite number", "correct or remove them"},
+    {"non_finite", Severity::error, "", "faces with a coordinate that is not a finite number",
+     "correct or remove them"},
     {"zero_area", Severity::note, "", "faces without area", "they make no patch and hide nothing; remove them"},
     {"self_intersecting", Severity::error, "", "faces whose boundary crosses or touches itself",
      "cut them into simple polygons"},
@@ -36,14 +37,15 @@ constexpr std::array<KindText, 14> kTexts{{
      "give a material Ke (MTL) or E (scene file)"},
     {"duplicate_face", Severity::warning, "m^2", "faces that are there twice; their area is",
      "remove one of each: the later one hides the other"},
-    {"non_manifold_edge", Severity::warning, "",
+    {"non_manifold_edge", Severity::note, "",
      "edges used by more than two faces of an object, or twice in the same direction",
-     "orient neighbouring faces alike and remove inner walls"},
+     "solids may touch so; otherwise orient neighbouring faces alike and remove inner walls"},
     {"open_edge", Severity::note, "m", "edges that no other face continues; their length is",
      "holes let light escape; close them, or leave the scene open"},
     {"contact_edge", Severity::note, "m", "edges that end on the surface of another piece; their length is",
      "the contact closes them; nothing to do"},
-    {"overlap_same_facing", Severity::warning, "m^2", "pairs of faces that lie on one another, facing the same way, over",
+    {"overlap_same_facing", Severity::warning, "m^2",
+     "pairs of faces that lie on one another, facing the same way, over",
      "the later one in the scene hides the other; raise or cut one if that is not meant"},
     {"overlap_against", Severity::note, "m^2", "pairs of faces in contact, facing against each other, over",
      "they exchange nothing; nothing to do"},
@@ -66,7 +68,8 @@ double largest_coordinate(const Polygon& polygon) {
 double deviation_from_plane(const Polygon& polygon) {
   const Vec3 normal = normalized(area_vector(polygon));
   Vec3 middle;
-  for (const Vec3& p : polygon.outer) middle = middle + (1 / static_cast<double>(polygon.outer.size())) * (p - polygon.outer[0]);
+  for (const Vec3& p : polygon.outer)
+    middle = middle + (1 / static_cast<double>(polygon.outer.size())) * (p - polygon.outer[0]);
   middle = middle + polygon.outer[0];
   double worst = 0;
   const auto look = [&](const std::vector<Vec3>& loop) {
@@ -77,7 +80,9 @@ double deviation_from_plane(const Polygon& polygon) {
   return worst;
 }
 
-auto order(const Vec3& p) { return std::tuple{p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
+auto order(const Vec3& p) {
+  return std::tuple{p.x + 0.0, p.y + 0.0, p.z + 0.0};
+}
 
 // The loop from its smallest vertex on, so that equal loops compare equal whichever vertex comes first.
 std::vector<Vec3> canonical(std::vector<Vec3> loop) {
@@ -116,13 +121,15 @@ class SceneChecker {
  private:
   Finding& finding(FindingKind kind) {
     const KindText& text = kTexts[static_cast<std::size_t>(kind)];
-    Finding& found = findings_[kind];
-    found.kind = kind;
-    found.severity = text.severity;
-    found.unit = text.unit;
-    found.what = text.what;
-    found.hint = text.hint;
-    return found;
+    const auto [found, is_new] = findings_.try_emplace(kind);
+    if (is_new) {
+      found->second.kind = kind;
+      found->second.severity = text.severity;
+      found->second.unit = text.unit;
+      found->second.what = text.what;
+      found->second.hint = text.hint;
+    }
+    return found->second;
   }
 
   void add(FindingKind kind, std::uint32_t surface, double amount = 0) {
@@ -142,7 +149,8 @@ class SceneChecker {
       const PolygonDefect defect = find_defect(polygon);
       if (defect == PolygonDefect::non_finite) add(FindingKind::non_finite, i);
       if (defect == PolygonDefect::self_intersecting) add(FindingKind::self_intersecting, i);
-      if (defect == PolygonDefect::zero_area || defect == PolygonDefect::too_few_vertices) add(FindingKind::zero_area, i);
+      if (defect == PolygonDefect::zero_area || defect == PolygonDefect::too_few_vertices)
+        add(FindingKind::zero_area, i);
       if (defect != PolygonDefect::none && defect != PolygonDefect::zero_area) continue;
       surface_of_.push_back(i);
       polygons_.push_back(polygon);
@@ -172,10 +180,10 @@ class SceneChecker {
       ++found.count;
       if (found.places.size() < kPlaces) found.places.push_back({i, m.name, m.file, m.line});
     }
-    const bool emits = std::ranges::any_of(scene_.surfaces, [&](const Surface& s) {
+    emits_ = std::ranges::any_of(scene_.surfaces, [&](const Surface& s) {
       return !s.obstruction_only && std::ranges::any_of(scene_.materials[s.material].E, [](double E) { return E > 0; });
     });
-    if (!emits) finding(FindingKind::no_emitter).count = 1;
+    if (!emits_) finding(FindingKind::no_emitter).count = 1;
   }
 
   void check_duplicates() {
@@ -203,13 +211,22 @@ class SceneChecker {
       uses.push_back({scene_.surfaces[surface].object, surface, up ? e.from : e.to, up ? e.to : e.from, up});
     }
     std::ranges::stable_sort(uses, {}, &Use::key);
+    bool unbalanced = false;
     for (std::size_t first = 0; first < uses.size();) {
       std::size_t last = first + 1;
       while (last < uses.size() && uses[last].key() == uses[first].key()) ++last;
-      const bool same_direction = last - first == 2 && uses[first].up == uses[first + 1].up;
-      if (last - first > 2 || same_direction) add(FindingKind::non_manifold_edge, uses[first].surface);
+      const auto up = static_cast<std::size_t>(std::count_if(uses.begin() + static_cast<std::ptrdiff_t>(first),
+                                                             uses.begin() + static_cast<std::ptrdiff_t>(last),
+                                                             [](const Use& use) { return use.up; }));
+      const bool balanced = 2 * up == last - first;
+      if (last - first > 2 || (last - first == 2 && !balanced)) {
+        add(FindingKind::non_manifold_edge, uses[first].surface);
+        unbalanced = unbalanced || !balanced;
+      }
       first = last;
     }
+    // Solids that touch along an edge, and sheets of two sides, are legal.
+    if (unbalanced) finding(FindingKind::non_manifold_edge).severity = Severity::warning;
   }
 
   void check_overlaps() {
@@ -231,26 +248,26 @@ class SceneChecker {
     Box all;
     for (const Polygon& polygon : polygons_) extend(all, polygon);
     for (const SurfacePiece& piece : found.pieces) {
-      if (seems_inside_out(piece, found.pieces.size() == 1)) {
+      if (seems_inside_out(piece, emits_ && found.pieces.size() == 1)) {
         add(FindingKind::inside_out, surface_of_[piece.polygons.front()], piece.area);
       }
       if (!piece.closed && piece.area > 0 && !spans(piece, all)) {
         add(FindingKind::single_sheet, surface_of_[piece.polygons.front()], piece.area);
       }
     }
-    report_.closed = encloses_all(found, [&](std::uint32_t polygon) -> const Surface& {
-      return scene_.surfaces[surface_of_[polygon]];
-    });
+    report_.closed = encloses_all(
+        found, [&](std::uint32_t polygon) -> const Surface& { return scene_.surfaces[surface_of_[polygon]]; });
   }
 
   static void extend(Box& box, const Polygon& polygon) {
     for (const Vec3& p : polygon.outer) box.extend(p);
   }
 
-  // A solid in a room that looks in and holds nothing, or a shell that looks out and holds the rest, or is all there is.
-  static bool seems_inside_out(const SurfacePiece& piece, bool alone) {
+  // A solid in a room that looks in and holds nothing, or a shell that looks out and holds the rest, or holds nothing
+  // but is all that could receive its light.
+  static bool seems_inside_out(const SurfacePiece& piece, bool lit_alone) {
     if (piece.volume < 0) return piece.enclosed && !piece.encloses;
-    return piece.volume > 0 && !piece.enclosed && (piece.encloses || alone);
+    return piece.volume > 0 && !piece.enclosed && (piece.encloses || lit_alone);
   }
 
   // An open piece as large as the scene is the room itself, of which a wall is missing.
@@ -261,21 +278,26 @@ class SceneChecker {
   }
 
   const Scene& scene_;
+  bool emits_ = false;
   SceneReport report_;
   std::map<FindingKind, Finding> findings_;
-  std::vector<Polygon> polygons_;           // those that geometry can work with
+  std::vector<Polygon> polygons_;          // those that geometry can work with
   std::vector<std::uint32_t> surface_of_;  // and the surfaces they are of
 };
 
 }  // namespace
 
-std::string_view name_of(FindingKind kind) { return kTexts[static_cast<std::size_t>(kind)].name; }
+std::string_view name_of(FindingKind kind) {
+  return kTexts[static_cast<std::size_t>(kind)].name;
+}
 
 std::string_view name_of(Severity severity) {
   return severity == Severity::note ? "note" : severity == Severity::warning ? "warning" : "error";
 }
 
-SceneReport check_scene(const Scene& scene) { return SceneChecker(scene).check(); }
+SceneReport check_scene(const Scene& scene) {
+  return SceneChecker(scene).check();
+}
 
 bool is_closed(const Scene& scene) {
   std::vector<Polygon> polygons;

@@ -10,20 +10,20 @@
 namespace exitance {
 
 enum class FindingKind {
-  non_finite,          ///< a coordinate is NaN or infinite
-  zero_area,           ///< all vertices of a face on one line
-  self_intersecting,   ///< the boundary of a face crosses or touches itself
-  non_planar,          ///< a face bent by more than rounding of its coordinates explains; `amount` is the worst deviation [m]
-  reflectance,         ///< rho outside [0, 1), or E negative or not finite; counts materials
-  no_emitter,          ///< nothing emits
-  duplicate_face,      ///< a face that is there already, facing the same way; `amount` is their area [m²]
-  non_manifold_edge,   ///< an edge of one object used by more than two faces, or twice in the same direction
-  open_edge,           ///< an edge that no other cancels and that ends on no surface; `amount` is their length [m]
-  contact_edge,        ///< an edge that no other cancels, but that ends on a surface; `amount` likewise
+  non_finite,         ///< a coordinate is NaN or infinite
+  zero_area,          ///< all vertices of a face on one line
+  self_intersecting,  ///< the boundary of a face crosses or touches itself
+  non_planar,   ///< a face bent by more than rounding of its coordinates explains; `amount` is the worst deviation [m]
+  reflectance,  ///< rho outside [0, 1), or E negative or not finite; counts materials
+  no_emitter,   ///< nothing emits
+  duplicate_face,       ///< a face that is there already, facing the same way; `amount` is their area [m²]
+  non_manifold_edge,    ///< an edge of one object used by more than two faces, or twice in the same direction
+  open_edge,            ///< an edge that no other cancels and that ends on no surface; `amount` is their length [m]
+  contact_edge,         ///< an edge that no other cancels, but that ends on a surface; `amount` likewise
   overlap_same_facing,  ///< two faces in one plane, one lying on the other; `amount` is the area in common [m²]
   overlap_against,      ///< two faces in one plane in contact, front to front or back to back; `amount` likewise
-  inside_out,          ///< a closed piece of surface that seems to face the wrong way; `amount` is its area [m²]
-  single_sheet,        ///< an open piece of surface within the scene, dark from behind; `amount` likewise
+  inside_out,           ///< a closed piece of surface that seems to face the wrong way; `amount` is its area [m²]
+  single_sheet,         ///< an open piece of surface within the scene, dark from behind; `amount` likewise
 };
 
 /// The kind's name as it stands above, e.g. "zero_area".
@@ -50,10 +50,10 @@ struct Finding {
   Severity severity{};
   std::size_t count = 0;
   double amount = 0;
-  std::string_view unit;              ///< of amount; empty when there is none
+  std::string_view unit;             ///< of amount; empty when there is none
   std::vector<FindingPlace> places;  ///< the first few
-  std::string_view what;              ///< in words, for a reader
-  std::string_view hint;              ///< how to mend it, or what follows from it
+  std::string_view what;             ///< in words, for a reader
+  std::string_view hint;             ///< how to mend it, or what follows from it
 };
 
 struct SceneReport {
@@ -65,15 +65,15 @@ struct SceneReport {
   std::vector<Finding> findings;  ///< in the order of the kinds, one a kind at most
 };
 
-/// Looks at everything listed in FindingKind. Faces that are not finite or cross themselves are left out of what comes after.
-/// Takes seconds for 60,000 polygons.
+/// Looks at everything listed in FindingKind. Faces that are not finite or cross themselves are left out of what comes
+/// after. Takes seconds for 60,000 polygons.
 SceneReport check_scene(const Scene& scene);
 
-/// Whether the surfaces bound a volume that the patches face, so that no light escapes: there is a closed piece of surface
-/// whose fronts look in (a room), and every other piece with patches is such a room too or lies within one. Edges must
-/// cancel exactly (T-junctions allowed) or end on the surface of another piece (contact: a box without a bottom on a floor).
-/// What stands within a room may be open: it lets nothing out. Takes a second or so for 60,000 polygons.
-/// REQUIRES: polygons without defects but zero area, as read_scene returns them.
+/// Whether the surfaces bound a volume that the patches face, so that no light escapes: there is a closed piece of
+/// surface whose fronts look in (a room), and every other piece with patches is such a room too or lies within one.
+/// Edges must cancel exactly (T-junctions allowed) or end on the surface of another piece (contact: a box without a
+/// bottom on a floor). What stands within a room may be open: it lets nothing out. Takes a second or so for 60,000
+/// polygons. REQUIRES: polygons without defects but zero area, as read_scene returns them.
 bool is_closed(const Scene& scene);
 
 }  // namespace exitance

@@ -1,10 +1,10 @@
 #include "src/scene/scene_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "src/scene/face_mending.h"
 #include "src/scene/furnished_room.h"
@@ -49,7 +49,8 @@ class SceneFile {
   void read_unit(TomlTable& file) {
     const auto unit = file.string("unit");
     if (!unit) return;
-    if (*unit != "W/m^2" && *unit != "lm/m^2") file.fail(file.line_of("unit"), "\"unit\" must be \"W/m^2\" or \"lm/m^2\"");
+    if (*unit != "W/m^2" && *unit != "lm/m^2")
+      file.fail(file.line_of("unit"), "\"unit\" must be \"W/m^2\" or \"lm/m^2\"");
     scene_.unit = *unit;
   }
 
@@ -141,7 +142,8 @@ class SceneFile {
   Scene read_mesh_part(const TomlTable& table, const std::string& mesh, const std::string& name) const {
     const std::filesystem::path file = path_.parent_path() / mesh;
     if (!std::filesystem::exists(file)) {
-      table.fail(table.line_of("mesh"), fmt::format("the mesh {} is missing; paths are relative to this file", file.string()));
+      table.fail(table.line_of("mesh"),
+                 fmt::format("the mesh {} is missing; paths are relative to this file", file.string()));
     }
     Scene part = read_mesh(file, emission_, keep_faults_);
     part.objects = {{name.empty() ? part.name : name, file.string()}};
@@ -153,7 +155,8 @@ class SceneFile {
     const std::int64_t polygons = table.require("polygons", table.integer("polygons"));
     const std::int64_t seed = table.require("seed", table.integer("seed"));
     table.refuse_unknown_keys();
-    if (polygons < 100 || polygons > 1'000'000) table.fail(table.line_of("polygons"), "\"polygons\" must be 100 to 1000000");
+    if (polygons < 100 || polygons > 1'000'000)
+      table.fail(table.line_of("polygons"), "\"polygons\" must be 100 to 1000000");
     if (seed < 0) table.fail(table.line_of("seed"), "\"seed\" must not be negative");
     Scene part = make_furnished_room(static_cast<std::uint32_t>(polygons), static_cast<std::uint64_t>(seed));
     if (!name.empty()) {
@@ -202,7 +205,8 @@ class SceneFile {
     const toml::array* list = node.as_array();
     if (!list) table.fail(line_of(node), "a polygon must be a list of points [[x, y, z], …]");
     if (list->size() < 3) {
-      table.fail(line_of(node), fmt::format("the polygon has {} vertices, it needs three; correct or remove it", list->size()));
+      table.fail(line_of(node),
+                 fmt::format("the polygon has {} vertices, it needs three; correct or remove it", list->size()));
     }
     std::vector<Vec3> loop;
     for (const toml::node& point : *list) loop.push_back(table.to_vector(point));

@@ -33,9 +33,9 @@
 //   two_sided = true                # adds every face again, turned over, right after itself
 //   obstruction_only = true         # hides, but neither emits nor receives
 //
-// Every [[object]] is one object of the scene, a furnished room as many as it has. Materials have one number a band; numbers
-// are repeated to the length of the lists, so that a scene with numbers only has one band. Keys that are not known are
-// errors.
+// Every [[object]] is one object of the scene, a furnished room as many as it has. Materials have one number a band;
+// numbers are repeated to the length of the lists, so that a scene with numbers only has one band. Keys that are not
+// known are errors.
 
 #include <filesystem>
 
@@ -44,9 +44,9 @@
 
 namespace exitance {
 
-/// Reads a scene file and the meshes it names. emission: how E and Ke are meant where the file does not say. Faces of meshes
-/// are mended (face_mending.h); polygons written in the file that cross themselves are refused, unless keep_faults. Throws
-/// InputError.
+/// Reads a scene file and the meshes it names. emission: how E and Ke are meant where the file does not say. Faces of
+/// meshes are mended (face_mending.h); polygons written in the file that cross themselves are refused, unless
+/// keep_faults. Throws InputError.
 Scene read_scene_file(const std::filesystem::path& path, Emission emission, bool keep_faults);
 
 }  // namespace exitance

@@ -1,5 +1,7 @@
 #include "src/scene/text_cursor.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <fstream>
@@ -11,11 +13,13 @@
 namespace exitance {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
 
 std::string quoted(std::string_view token) {
   constexpr std::size_t kLongest = 40;
-  return "\"" + std::string(token.substr(0, kLongest)) + (token.size() > kLongest ? "…\"" : "\"");
+  return fmt::format("\"{}{}\"", token.substr(0, kLongest), token.size() > kLongest ? "…" : "");
 }
 
 // std::from_chars takes no plus sign.
@@ -72,7 +76,8 @@ std::string_view TextCursor::next_token() {
   const std::size_t start = position_;
   while (position_ < text_.size() && text_[position_] != '\n' && !is_blank(text_[position_])) ++position_;
   // "1\" at the end of a line: the backslash continues the line and is no part of the token.
-  if (text_[position_ - 1] == '\\' && (position_ == text_.size() || text_[position_] == '\n' || text_[position_] == '\r')) {
+  if (text_[position_ - 1] == '\\' &&
+      (position_ == text_.size() || text_[position_] == '\n' || text_[position_] == '\r')) {
     if (--position_ == start) return {};
   }
   return text_.substr(start, position_ - start);
@@ -95,15 +100,19 @@ std::string_view TextCursor::token_across_lines() {
   return {};
 }
 
-double TextCursor::number() { return to_number(next_token()); }
+double TextCursor::number() {
+  return to_number(next_token());
+}
 
 double TextCursor::to_number(std::string_view token) const {
   if (token.empty()) fail("a number is missing; the file may be truncated");
   const std::string_view digits = without_plus(token);
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range) fail(quoted(token) + " is outside the range of a double; rescale the mesh");
-  if (error != std::errc{} || end != digits.data() + digits.size()) fail(quoted(token) + " is not a number; correct it");
+  if (error == std::errc::result_out_of_range)
+    fail(quoted(token) + " is outside the range of a double; rescale the mesh");
+  if (error != std::errc{} || end != digits.data() + digits.size())
+    fail(quoted(token) + " is not a number; correct it");
   return value;
 }
 
@@ -112,10 +121,13 @@ std::int64_t TextCursor::to_integer(std::string_view token) const {
   const std::string_view digits = without_plus(token);
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc{} || end != digits.data() + digits.size()) fail(quoted(token) + " is not a whole number; correct it");
+  if (error != std::errc{} || end != digits.data() + digits.size())
+    fail(quoted(token) + " is not a whole number; correct it");
   return value;
 }
 
-void TextCursor::fail(const std::string& what) const { throw InputError(file_, line_, what); }
+void TextCursor::fail(const std::string& what) const {
+  throw InputError(file_, line_, what);
+}
 
 }  // namespace exitance

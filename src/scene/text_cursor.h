@@ -18,16 +18,16 @@ class TextCursor {
   /// The text must outlive the cursor, which stands before the first line.
   TextCursor(std::string file, std::string_view text);
 
-  bool next_line();                ///< moves to the start of the next line; false at the end of the text
-  std::string_view next_token();   ///< the next one of this line; empty at its end
-  std::string_view rest_of_line(); ///< all that is left of this line, comments included, without blanks around it
+  bool next_line();                 ///< moves to the start of the next line; false at the end of the text
+  std::string_view next_token();    ///< the next one of this line; empty at its end
+  std::string_view rest_of_line();  ///< all that is left of this line, comments included, without blanks around it
   std::string_view token_across_lines();  ///< the next token of this or a later line; empty at the end of the text
 
-  /// The next number of this line. Throws InputError when it is missing, malformed or out of a double's range; "nan" and
-  /// "inf" are numbers.
+  /// The next number of this line. Throws InputError when it is missing, malformed or out of a double's range; "nan"
+  /// and "inf" are numbers.
   double number();
-  double to_number(std::string_view token) const;          ///< the same for a token; empty counts as missing
-  std::int64_t to_integer(std::string_view token) const;   ///< likewise, for a whole decimal number
+  double to_number(std::string_view token) const;         ///< the same for a token; empty counts as missing
+  std::int64_t to_integer(std::string_view token) const;  ///< likewise, for a whole decimal number
 
   std::size_t end_of_line() const;  ///< offset in the text of what follows this line
   std::uint32_t line() const { return line_; }

@@ -1,15 +1,17 @@
 #include "src/scene/toml_table.h"
 
-#include <utility>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <utility>
 
 #include "src/scene/input_error.h"
 
 namespace exitance {
 
-std::uint32_t line_of(const toml::node& node) { return node.source().begin.line; }
+std::uint32_t line_of(const toml::node& node) {
+  return node.source().begin.line;
+}
 
 TomlTable::TomlTable(const toml::table& table, std::string file, std::string name)
     : table_(table), file_(std::move(file)), name_(std::move(name)) {}
@@ -30,7 +32,8 @@ std::optional<double> TomlTable::number(std::string_view key) {
   const toml::node* node = find(key);
   if (!node) return std::nullopt;
   const auto value = node->is_number() ? node->value<double>() : std::nullopt;
-  if (!value || !std::isfinite(*value)) fail(exitance::line_of(*node), fmt::format("\"{}\" must be a finite number", key));
+  if (!value || !std::isfinite(*value))
+    fail(exitance::line_of(*node), fmt::format("\"{}\" must be a finite number", key));
   return value;
 }
 
@@ -60,7 +63,8 @@ Vec3 TomlTable::to_vector(const toml::node& node) const {
   for (int axis = 0; axis < 3; ++axis) {
     const toml::node& item = (*list)[static_cast<std::size_t>(axis)];
     const auto value = item.is_number() ? item.value<double>() : std::nullopt;
-    if (!value || !std::isfinite(*value)) fail(exitance::line_of(item), "a coordinate is not a finite number; correct it");
+    if (!value || !std::isfinite(*value))
+      fail(exitance::line_of(item), "a coordinate is not a finite number; correct it");
     v[axis] = *value;
   }
   return v;
@@ -71,10 +75,12 @@ std::optional<std::vector<double>> TomlTable::numbers(std::string_view key) {
   if (!node) return std::nullopt;
   if (node->is_number()) return std::vector<double>{*node->value<double>()};
   const toml::array* list = node->as_array();
-  if (!list || list->empty()) fail(exitance::line_of(*node), fmt::format("\"{}\" must be a number or a list of numbers", key));
+  if (!list || list->empty())
+    fail(exitance::line_of(*node), fmt::format("\"{}\" must be a number or a list of numbers", key));
   std::vector<double> values;
   for (const toml::node& item : *list) {
-    if (!item.is_number()) fail(exitance::line_of(item), fmt::format("\"{}\" must be a number or a list of numbers", key));
+    if (!item.is_number())
+      fail(exitance::line_of(item), fmt::format("\"{}\" must be a number or a list of numbers", key));
     values.push_back(*item.value<double>());
   }
   return values;
@@ -118,10 +124,16 @@ void TomlTable::refuse_unknown_keys() const {
   }
 }
 
-std::uint32_t TomlTable::line() const { return exitance::line_of(table_); }
+std::uint32_t TomlTable::line() const {
+  return exitance::line_of(table_);
+}
 
-std::uint32_t TomlTable::line_of(std::string_view key) const { return exitance::line_of(*table_.get(key)); }
+std::uint32_t TomlTable::line_of(std::string_view key) const {
+  return exitance::line_of(*table_.get(key));
+}
 
-void TomlTable::fail(std::uint32_t line, const std::string& what) const { throw InputError(file_, line, what); }
+void TomlTable::fail(std::uint32_t line, const std::string& what) const {
+  throw InputError(file_, line, what);
+}
 
 }  // namespace exitance

@@ -1,13 +1,14 @@
 #pragma once
-// A table of a TOML file, read key by key: what is missing, of the wrong type or unknown is an error that names its line.
+// A table of a TOML file, read key by key: what is missing, of the wrong type or unknown is an error that names its
+// line.
+
+#include <toml++/toml.h>
 
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <toml++/toml.h>
 
 #include "geometry/vec3.h"
 
@@ -22,14 +23,15 @@ class TomlTable {
   bool has(std::string_view key) const { return table_.contains(key); }
   bool is_list(std::string_view key) const { return table_.get(key) && table_.get(key)->is_array(); }
   std::optional<std::string> string(std::string_view key);
-  std::optional<double> number(std::string_view key);            ///< finite
+  std::optional<double> number(std::string_view key);  ///< finite
   std::optional<std::int64_t> integer(std::string_view key);
-  bool flag(std::string_view key);                               ///< false where it is not there
-  std::optional<Vec3> vector(std::string_view key);              ///< three finite numbers
-  std::optional<std::vector<double>> numbers(std::string_view key);  ///< one number, or a list of at least one; any value
+  bool flag(std::string_view key);                   ///< false where it is not there
+  std::optional<Vec3> vector(std::string_view key);  ///< three finite numbers
+  std::optional<std::vector<double>> numbers(
+      std::string_view key);  ///< one number, or a list of at least one; any value
   std::optional<TomlTable> table(std::string_view key);
-  const toml::array* array(std::string_view key);                ///< null where it is not there
-  std::vector<TomlTable> tables(std::string_view key);           ///< of an array of tables
+  const toml::array* array(std::string_view key);       ///< null where it is not there
+  std::vector<TomlTable> tables(std::string_view key);  ///< of an array of tables
   std::vector<std::string> keys() const;
 
   template <typename Value>

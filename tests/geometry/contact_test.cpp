@@ -1,0 +1,95 @@
+#include "geometry/contact.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace exitance {
+namespace {
+
+Polygon square(Vec3 corner, Vec3 u, Vec3 v) {
+  return {{corner, corner + u, corner + u + v, corner + v}, {}};
+}
+
+Polygon reversed(Polygon p) {
+  std::reverse(p.outer.begin(), p.outer.end());
+  return p;
+}
+
+TEST(Contact, BoxBottomOnAFloor) {
+  const std::vector<Polygon> scene{square({0, 0, 0}, {3, 0, 0}, {0, 3, 0}),
+                                   reversed(square({1, 1, 0}, {1, 0, 0}, {0, 1, 0})),
+                                   square({2.5, 2.5, 0}, {1, 0, 0}, {0, 1, 0})};
+  const auto overlaps = coplanar_overlaps(scene);
+  ASSERT_EQ(overlaps.size(), 2u);
+  EXPECT_EQ(overlaps[0].a, 0u);
+  EXPECT_EQ(overlaps[0].b, 1u);
+  EXPECT_EQ(overlaps[0].area, 1);
+  EXPECT_FALSE(overlaps[0].same_facing);
+  EXPECT_EQ(overlaps[1].b, 2u);
+  EXPECT_EQ(overlaps[1].area, 0.25);
+  EXPECT_TRUE(overlaps[1].same_facing);
+}
+
+TEST(Contact, TouchingIsNoOverlapNorIsAGapOfOneUlp) {
+  const std::vector<Polygon> scene{square({0, 0, 1}, {1, 0, 0}, {0, 1, 0}),
+                                   square({1, 0, 1}, {1, 0, 0}, {0, 1, 0}),
+                                   square({1, 1, 1}, {1, 0, 0}, {0, 1, 0}),
+                                   square({0, 0, std::nextafter(1, 2)}, {1, 0, 0}, {0, 1, 0}),
+                                   {{{0, 0, 1}, {0.5, 0.5, 1}, {1, 1, 1}}, {}}};
+  EXPECT_TRUE(coplanar_overlaps(scene).empty());
+}
+
+TEST(Contact, OverlapOfOneUlp) {
+  const double less = std::nextafter(1, 0);
+  const std::vector<Polygon> scene{square({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
+                                   {{{less, 0, 0}, {2, 0, 0}, {2, 1, 0}, {less, 1, 0}}, {}}};
+  const auto overlaps = coplanar_overlaps(scene);
+  ASSERT_EQ(overlaps.size(), 1u);
+  EXPECT_EQ(overlaps[0].area, 1 - less);
+}
+
+// In the plane x + y + z = 0 with integer coordinates, so planes are exact though no axis is perpendicular to them.
+TEST(Contact, TiltedPlanes) {
+  const Vec3 u{3, -3, 0}, v{0, 3, -3};
+  const std::vector<Polygon> scene{square({0, 0, 0}, u, v),
+                                   reversed(square((1. / 3) * (u + v), (1. / 3) * u, (1. / 3) * v)),
+                                   square({0, 0, 0}, -u, v)};
+  const auto overlaps = coplanar_overlaps(scene);
+  ASSERT_EQ(overlaps.size(), 1u);
+  EXPECT_EQ(overlaps[0].b, 1u);
+  EXPECT_NEAR(overlaps[0].area, norm(cross(u, v)) / 9, 1e-14);
+}
+
+// Rounded coordinates of a turned object: faces that share all their vertices are still exactly coplanar.
+TEST(Contact, TurnedTriangleOnItself) {
+  const Vec3 a{0.1, 0.7, 0.3}, b{1.3, 0.2, 0.9}, c{0.4, 1.1, 1.7};
+  const auto overlaps = coplanar_overlaps(std::vector<Polygon>{{{a, b, c}, {}}, {{c, b, a}, {}}});
+  ASSERT_EQ(overlaps.size(), 1u);
+  EXPECT_FALSE(overlaps[0].same_facing);
+  EXPECT_NEAR(overlaps[0].area, norm(cross(b - a, c - a)) / 2, 1e-15);
+}
+
+TEST(Contact, PolygonsThatAreNotPlanarMeetAsTheirTriangles) {
+  const Polygon bent{{{0, 0, 0}, {2, 0, 0}, {2, 2, 1e-3}, {0, 2, 0}}, {}};
+  EXPECT_TRUE(coplanar_overlaps(std::vector<Polygon>{bent, square({1.9, 1.9, 0}, {1, 0, 0}, {0, 1, 0})}).empty());
+  const auto overlaps = coplanar_overlaps(std::vector<Polygon>{bent, reversed(bent)});
+  ASSERT_EQ(overlaps.size(), 1u);
+  EXPECT_NEAR(overlaps[0].area, 4, 1e-5);
+}
+
+TEST(Contact, HolesAndConcavePolygonsCountOnlyTheirArea) {
+  Polygon frame = square({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  frame.holes.push_back(square({1, 1, 0}, {2, 0, 0}, {0, 2, 0}).outer);
+  const auto overlaps = coplanar_overlaps(
+      std::vector<Polygon>{frame, square({1, 1, 0}, {2, 0, 0}, {0, 2, 0}), square({0, 0, 0}, {2, 0, 0}, {0, 2, 0})});
+  ASSERT_EQ(overlaps.size(), 2u);
+  EXPECT_EQ(overlaps[0].b, 2u);
+  EXPECT_DOUBLE_EQ(overlaps[0].area, 3);
+  EXPECT_EQ(overlaps[1].a, 1u);
+  EXPECT_DOUBLE_EQ(overlaps[1].area, 1);
+}
+
+}  // namespace
+}  // namespace exitance
