@@ -76,7 +76,8 @@ struct ConeSide {
   Real sweep{1};  ///< bound of |dθ/dt| along the edge, θ the angle under which x sees it
   std::uint32_t from = 0, to = 0;  ///< corners
   Stretch<Real> stretch;           ///< of the edge between them that bounds the cone
-  bool bounds = true;              ///< false where a neighbour carries on, so that the edge bounds nothing
+  std::uint32_t across = 0xffffffffu;  ///< facet that shares the edge; none: kNone
+  bool below_horizon = false;      ///< neither corner is above the receiver's horizon
 };
 
 template <class Real>

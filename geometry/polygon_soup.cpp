@@ -95,6 +95,7 @@ PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role
   find_neighbours();
   find_shells();
   find_coplanar();
+  build_index();
 }
 
 void PolygonSoup::add_facets(std::span<const Polygon> polygons) {
@@ -118,13 +119,7 @@ void PolygonSoup::add_facets(std::span<const Polygon> polygons) {
     }
     first_facet_.push_back(static_cast<std::uint32_t>(facets_.size()));
   }
-  std::vector<Box> boxes(facets_.size());
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    facets_[f].plane = plane_of(vertices_, corners(facets_[f]));
-    if (roles_[facets_[f].polygon] == Role::unoccluding) continue;
-    for (const Corner& c : corners(facets_[f])) boxes[f].extend(vertices_[c.vertex]);
-  }
-  index_ = SpatialIndex(boxes);
+  for (Facet& f : facets_) f.plane = plane_of(vertices_, corners(f));
 }
 
 void PolygonSoup::find_neighbours() {
@@ -149,6 +144,7 @@ void PolygonSoup::find_neighbours() {
 }
 
 void PolygonSoup::find_shells() {
+  StageCounts counts;
   std::vector<bool> visited(facets_.size(), false);
   std::vector<std::uint32_t> component;
   for (std::uint32_t seed = 0; seed < facets_.size(); ++seed) {
@@ -172,30 +168,62 @@ void PolygonSoup::find_shells() {
       }
     }
     if (!closed || triangles.size() < 4 || !bounds_solid(vertices_, triangles)) continue;
-    for (const auto f : component) facets_[f].shell = static_cast<std::uint32_t>(shells_.size());
-    shells_.push_back(box);
+    Shell shell;
+    shell.box = box;
+    shell.facets = component;
+    std::sort(shell.facets.begin(), shell.facets.end());
+    shell.convex = true;
+    for (const auto f : shell.facets) {
+      facets_[f].shell = static_cast<std::uint32_t>(shells_.size());
+      for (const Corner& c : corners(facets_[f])) {
+        shell.vertices.push_back(c.vertex);
+        // Convex along every edge, a closed surface that does not intersect itself is convex as a whole (Tietze–Nakajima).
+        for (const Corner& n : corners(facets_[c.neighbour])) {
+          shell.convex = shell.convex && side_of(facets_[f].plane, vertices_[n.vertex], counts) <= 0;
+        }
+      }
+    }
+    std::sort(shell.vertices.begin(), shell.vertices.end());
+    shell.vertices.erase(std::unique(shell.vertices.begin(), shell.vertices.end()), shell.vertices.end());
+    shells_.push_back(std::move(shell));
   }
 }
 
 void PolygonSoup::find_coplanar() {
+  std::vector<Box> boxes(facets_.size());
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    for (const Corner& c : corners(facets_[f])) boxes[f].extend(vertices_[c.vertex]);
+  }
+  const SpatialIndex index(boxes);
   StageCounts counts;
   coplanar_first_.assign(1, 0);
   std::vector<std::uint32_t> near;
   for (std::uint32_t f = 0; f < facets_.size(); ++f) {
-    Box box;
-    for (const Corner& c : corners(facets_[f])) box.extend(vertices_[c.vertex]);
     near.clear();
-    index_.find(box, near);
+    index.find(boxes[f], near);
     std::sort(near.begin(), near.end());
     const Plane& plane = facets_[f].plane;
     for (const auto t : near) {
-      if (facets_[t].polygon == facets_[f].polygon) continue;
+      if (facets_[t].polygon == facets_[f].polygon || roles_[facets_[t].polygon] == Role::unoccluding) continue;
       const auto in_plane = [&](const Corner& c) { return side_of(plane, vertices_[c.vertex], counts) == 0; };
       const auto c = corners(facets_[t]);
       if (std::all_of(c.begin(), c.end(), in_plane)) coplanar_.push_back(t);
     }
     coplanar_first_.push_back(static_cast<std::uint32_t>(coplanar_.size()));
   }
+}
+
+void PolygonSoup::build_index() {
+  std::vector<Box> boxes(facets_.size() + shells_.size());
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const bool of_convex_shell = facets_[f].shell != kNone && shells_[facets_[f].shell].convex;
+    if (roles_[facets_[f].polygon] == Role::unoccluding || of_convex_shell) continue;
+    for (const Corner& c : corners(facets_[f])) boxes[f].extend(vertices_[c.vertex]);
+  }
+  for (std::size_t s = 0; s < shells_.size(); ++s) {
+    if (shells_[s].convex) boxes[facets_.size() + s] = shells_[s].box;
+  }
+  index_ = SpatialIndex(boxes);
 }
 
 bool PolygonSoup::covers(std::uint32_t t, std::uint32_t f) const {

@@ -6,17 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "geometry/polygon_soup.h"
+#include "geometry/view.h"
 
 namespace exitance {
-
-/// A point that receives, with the normal of its surface (any length but zero). A point of a facet lies on it by identity,
-/// not by sign: it names the facet, and then neither that facet's polygon nor what lies in its plane hides anything from it.
-struct Receiver {
-  Vec3 point;
-  Vec3 normal;
-  std::uint32_t facet = kNone;
-};
 
 /// A convex source: a whole facet (empty loop) or a piece of it, whose loop runs counter-clockwise seen from the facet's
 /// front and whose points, though rounded, lie in the facet's plane by identity.
