@@ -8,8 +8,9 @@ namespace {
 
 /// What a cell with uncut events may hide from its sample points, as a share of the unobstructed value.
 constexpr double kUnnoticed = 1e-3;
-/// Proven error of a point's value beyond which extended precision is asked.
-constexpr double kPointTolerance = 1e-13;
+/// Proven error of a point's value beyond which extended precision is asked: this, or what the cell's share of the
+/// tolerance allows. Cells near a contact are tiny, and there double precision proves little.
+constexpr double kPointTolerance = 1e-13, kCellShare = 1e-3;
 /// The lower order of each pair of rules.
 constexpr int lower(std::uint32_t order) {
   return order == 4 ? 3 : 6;
@@ -41,15 +42,16 @@ AreaMean::AreaMean(const PolygonSoup& soup, std::uint32_t receiver_polygon, std:
   }
 }
 
-double AreaMean::rule(AreaViews& views, const Cell& cell, int order, double& point_error) {
+double AreaMean::rule(AreaViews& views, const Cell& cell, int order, double tolerance, double& point_error) {
   gauss_points(cell.shape, order, scratch_);
   const Vec3& normal = soup_->facets()[cell.facet].plane.normal;
+  const double point_tolerance = std::max(kPointTolerance, kCellShare * tolerance / cell.shape.area());
   double sum = 0;
   point_error = 0;
   for (const WeightedPoint& p : scratch_) {
     views.view.look_from({p.point, normal, cell.facet});
     for (std::uint32_t s = soup_->first_facet(source_); s < soup_->first_facet(source_ + 1); ++s) {
-      const PointFormFactor f = views.view.form_factor({s, {}}, kPointTolerance);
+      const PointFormFactor f = views.view.form_factor({s, {}}, point_tolerance);
       if (f.side != Side::front) continue;
       sum += p.weight * f.F;
       point_error += p.weight * f.error;
@@ -59,10 +61,10 @@ double AreaMean::rule(AreaViews& views, const Cell& cell, int order, double& poi
   return sum;
 }
 
-void AreaMean::measure(AreaViews& views, Cell& cell) {
+void AreaMean::measure(AreaViews& views, Cell& cell, double tolerance) {
   double ignored = 0;
-  const double coarse = rule(views, cell, lower(cell.order), ignored);
-  cell.integral = rule(views, cell, static_cast<int>(cell.order), cell.point_error);
+  const double coarse = rule(views, cell, lower(cell.order), tolerance, ignored);
+  cell.integral = rule(views, cell, static_cast<int>(cell.order), tolerance, cell.point_error);
   // Rounding: of each weight and product, and of the sum of up to 64 of them.
   cell.point_error += 80 * kRoundoff * cell.integral;
   cell.error = std::fabs(cell.integral - coarse);
@@ -131,7 +133,7 @@ void AreaMean::refine(AreaViews& views, double tolerance, std::uint64_t points) 
   if (!started_) {
     started_ = true;
     for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-      measure(views, cells_[c]);
+      measure(views, cells_[c], tolerance);
       running_error_ += cells_[c].error + cells_[c].point_error;
       push(c);
     }
@@ -152,7 +154,7 @@ void AreaMean::refine(AreaViews& views, double tolerance, std::uint64_t points) 
     }
     for (std::size_t k = 0; k < parts.size(); ++k) {
       Cell& part = parts[k];
-      measure(views, part);
+      measure(views, part, tolerance);
       running_error_ += part.error + part.point_error;
       std::uint32_t place = worst;
       if (k > 0) {

@@ -39,8 +39,8 @@ class AreaMean {
     double integral = 0, error = 0, point_error = 0;
   };
 
-  void measure(AreaViews& views, Cell& cell);
-  double rule(AreaViews& views, const Cell& cell, int order, double& point_error);
+  void measure(AreaViews& views, Cell& cell, double tolerance);
+  double rule(AreaViews& views, const Cell& cell, int order, double tolerance, double& point_error);
   std::vector<Cell> parts_of(const Cell& cell) const;
 
   const PolygonSoup* soup_;
