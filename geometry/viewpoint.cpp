@@ -91,7 +91,7 @@ struct Viewpoint::State {
 
 bool Viewpoint::State::excluded(std::uint32_t facet) const {
   if (receiver.facet == kNone) return false;
-  if (soup.facets()[facet].polygon == soup.facets()[receiver.facet].polygon) return true;
+  if (facet == receiver.facet) return true;  // facets of the same polygon that is bent see each other
   const auto coplanar = soup.coplanar(receiver.facet);
   return std::binary_search(coplanar.begin(), coplanar.end(), facet);
 }

@@ -11,7 +11,7 @@
 namespace exitance {
 
 /// A point that receives, with the normal of its surface (any length but zero). A point of a facet lies on it by identity,
-/// not by sign: it names the facet, and then neither that facet's polygon nor what lies in its plane hides anything from it.
+/// not by sign: it names the facet, and then neither that facet nor what lies in its plane hides anything from it.
 struct Receiver {
   Vec3 point;
   Vec3 normal;
