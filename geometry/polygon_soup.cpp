@@ -50,6 +50,7 @@ Plane plane_of(std::span<const Vec3> vertices, std::span<const Corner> corners) 
   // |p_i q_j| + |p_j q_i| ≤ |p||q|, each product with two roundings of differences, one of its own and one of the
   // subtraction: 4.01 u |p||q|; 5 covers the rounding of the norms.
   plane.normal_error = 5 * kRoundoff * norm(p) * norm(q);
+  plane.normal_size = std::max({std::fabs(plane.normal.x), std::fabs(plane.normal.y), std::fabs(plane.normal.z)});
   plane.points = {&a, &b, &c};
   for (int axis = 0; axis < 3; ++axis) {
     if (std::all_of(corners.begin(), corners.end(),
@@ -67,10 +68,23 @@ Plane plane_of(std::span<const Vec3> vertices, std::span<const Corner> corners) 
 }  // namespace
 
 int side_of(const Plane& plane, const Vec3& v, StageCounts& counts) {
-  if (plane.axis < 0) return orientation(*plane.points.a, *plane.points.b, *plane.points.c, v, counts);
-  const double c = v[plane.axis], p = plane.origin[plane.axis];
-  ++counts.filter;
-  return c > p ? plane.axis_sign : c < p ? -plane.axis_sign : 0;
+  if (plane.axis >= 0) {
+    const double c = v[plane.axis], p = plane.origin[plane.axis];
+    ++counts.filter;
+    return c > p ? plane.axis_sign : c < p ? -plane.axis_sign : 0;
+  }
+  // The normal's error in each component, and on each product one rounding of the difference, one of its own and at most
+  // two of the sum.
+  const Vec3 w = v - plane.origin;
+  const double value = dot(plane.normal, w);
+  const double bound = (1.01 * plane.normal_error + 5 * kRoundoff * plane.normal_size) *
+                           (std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z)) +
+                       0x1p-1000;
+  if (value > bound || value < -bound) {
+    ++counts.filter;
+    return value > 0 ? 1 : -1;
+  }
+  return orientation(*plane.points.a, *plane.points.b, *plane.points.c, v, counts);
 }
 
 PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role> roles)

@@ -27,6 +27,7 @@ struct Plane {
   Vec3 origin;              ///< one of the vertices
   Vec3 normal;              ///< rounded cross product of two edges, not of unit length
   double normal_error = 0;  ///< bound of the error of each of the normal's components
+  double normal_size = 0;   ///< largest of |components|
   PlanePoints points;       ///< three vertices, counter-clockwise, that define the plane exactly
   int axis = -1;            ///< 0, 1, 2: exactly perpendicular to that axis; −1: not
   int axis_sign = 0;        ///< of the exact normal along that axis

@@ -27,8 +27,10 @@ struct Box {
     extend(b.lower);
     extend(b.upper);
   }
-  bool contains(const Vec3& p) const {
-    return lower.x <= p.x && p.x <= upper.x && lower.y <= p.y && p.y <= upper.y && lower.z <= p.z && p.z <= upper.z;
+  /// Whether p is inside or on the boundary of the box grown by `margin` on every side.
+  bool contains(const Vec3& p, double margin = 0) const {
+    return lower.x - margin <= p.x && p.x <= upper.x + margin && lower.y - margin <= p.y && p.y <= upper.y + margin &&
+           lower.z - margin <= p.z && p.z <= upper.z + margin;
   }
   bool overlaps(const Box& b) const {
     return lower.x <= b.upper.x && b.lower.x <= upper.x && lower.y <= b.upper.y && b.lower.y <= upper.y &&

@@ -97,7 +97,8 @@ bool Viewpoint::State::excluded(std::uint32_t facet) const {
 }
 
 /// The side from which an occluding facet is seen. Back faces of a shell hide nothing from a point outside its box
-/// that its front faces do not hide: they count as edge-on.
+/// that its front faces do not hide: they count as edge-on. (The box is grown, because a point that lies in a contact by
+/// identity may be rounded out of it.)
 int Viewpoint::State::facing(std::uint32_t facet) {
   FacetView& view = facet_view[facet];
   if (view.epoch != epoch) {
@@ -106,7 +107,7 @@ int Viewpoint::State::facing(std::uint32_t facet) {
     view.facing = 0;
     if (!excluded(facet)) {
       view.facing = static_cast<std::int8_t>(side_of(f.plane, receiver.point, counts));
-      if (view.facing < 0 && f.shell != kNone && !soup.shells()[f.shell].contains(receiver.point)) view.facing = 0;
+      if (view.facing < 0 && f.shell != kNone && !soup.shells()[f.shell].contains(receiver.point, 0x1p-40 * soup.extent())) view.facing = 0;
     }
   }
   return view.facing;

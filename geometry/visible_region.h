@@ -193,7 +193,7 @@ void VisibleRegion<Real>::fill_row(const ConeSide<Real>& side, const Cone<Real>&
 template <class Real>
 void VisibleRegion<Real>::narrow_along(Stretch<Real>& stretch, const Cone<Real>& cone, const ConeSide<Real>& edge,
                                        const ConeSide<Real>& side) {
-  narrow(stretch, row_[edge.from], row_[edge.to], [&] {
+  narrow(stretch, row_[edge.from], row_[edge.to], edge.sweep, [&] {
     if constexpr (!std::is_same_v<Real, double>) return;
     for (const std::uint32_t k : {edge.from, edge.to}) {
       row_[k] = refined_value_at(side, cone.corners[k], frame_, counts_);

@@ -182,7 +182,8 @@ class SceneFile {
   }
 
   void read_polygon(const TomlTable& object, const toml::node& node, Scene& part) {
-    Surface surface{.line = line_of(node)};
+    Surface surface;
+    surface.line = line_of(node);
     if (node.is_table()) {
       TomlTable table(*node.as_table(), object.file(), "polygons");
       const toml::array* outer = table.array("polygon");
