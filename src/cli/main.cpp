@@ -25,7 +25,8 @@ int refuse(ExitCode code, std::string message) {
 int run(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
-    return done;
+    if (!app.get_subcommands().empty()) return done;
+    return refuse(usage, "a verb is needed; see exitance --help");
   } catch (const CLI::RuntimeError& ended) {
     return ended.get_exit_code();
   } catch (const CLI::ParseError& wrong) {
@@ -51,7 +52,7 @@ int run(CLI::App& app, int argc, char** argv) {
 int main(int argc, char** argv) {
   CLI::App app{"exitance: radiosity with exact visibility", "exitance"};
   app.set_version_flag("--version", build_manifest().version);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.footer(
       "Exit codes: 0 done; 1 a numerical check failed; 2 usage; 3 bad input; 4 a limit was reached.\n"
       "Results go to stdout or to -o, progress and messages to stderr.");

@@ -56,7 +56,8 @@ std::string summary(const Report& r) {
   line("iterations", fmt::format("{}, residual {:.3g}", r.iterations, r.residual));
   line("closure defect",
        fmt::format("{} ({} sample points measured, {} in contact)",
-                   number_or(r.closure_max_defect, "none, the scene is open"), r.measured_points, r.covered_points));
+                   number_or(r.closure_max_defect, r.measured_points > 0 ? "none, the scene is open" : "not measured"),
+                   r.measured_points, r.covered_points));
   line("reciprocity defect", number_or(r.reciprocity_max_defect, "not measured") + " (quadrature of sample points)");
   line("energy balance defect", number_or(r.energy_balance_defect, "not measured") + " (quadrature of sample points)");
   line("error bound", fmt::format("{:.3g} of B max (solver {:.3g}, form factors {:.3g})", r.error_bound,

@@ -37,7 +37,7 @@ struct Report {
   double form_factor_error = 0;   ///< its second part: what the errors of the form factors add
   /// Relative to what is emitted, worst band. None where the form factors were not complete.
   std::optional<double> energy_balance_defect;
-  std::optional<double> closure_max_defect;  ///< none where the scene is open
+  std::optional<double> closure_max_defect;  ///< none where the scene is open or nothing was measured
   std::uint64_t measured_points = 0;         ///< sample points for which closure, covered points and pairs were counted
   std::uint64_t covered_points = 0;
   std::optional<double> reciprocity_max_defect;  ///< of pairs integrated anew; none where none was

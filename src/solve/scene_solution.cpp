@@ -57,8 +57,7 @@ std::vector<double> patch_means(const Discretisation& d, std::span<const double>
 
 class SceneSolver {
  public:
-  SceneSolver(const Scene& scene, const SolveOptions& options)
-      : options_(options), result_(make_soup(scene)) {
+  SceneSolver(const Scene& scene, const SolveOptions& options) : options_(options), result_(make_soup(scene)) {
     result_.mesh = make_patch_mesh(scene, result_.soup, options.mesh);
     if (result_.mesh.patches.empty())
       throw InputError(scene.name, 0, "no surface has an area; there is nothing to solve");
@@ -77,7 +76,7 @@ class SceneSolver {
       shoot_without_matrix();
     }
     measure_energy_balance();
-    measure_reciprocity();
+    if (!stopped()) measure_reciprocity();
     return std::move(result_);
   }
 
@@ -163,7 +162,7 @@ class SceneSolver {
       if (!is_known[p]) column(p, F, F_error);
     }
     all_columns_known_ = !result_.stopped;
-    measure_sample();
+    if (!stopped()) measure_sample();
     result_.seconds_solve = stopwatch_.lap();
   }
 

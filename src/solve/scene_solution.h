@@ -61,7 +61,7 @@ struct SceneSolution {
   std::optional<double> energy_balance_defect;
   /// max |A_i F_ij − A_j F_ji| / min(A_i, A_j) of up to 64 random pairs that see each other, each F integrated anew
   /// over its own receiver. With sample points as receivers this shows the error of that quadrature, not of visibility.
-  /// None where no such pair was found.
+  /// None where no such pair was found, or time was up.
   std::optional<double> reciprocity_max_defect;
 
   double seconds_form_factors = 0, seconds_solve = 0;  ///< wall clock; shooting without a matrix is all `solve`

@@ -68,7 +68,7 @@ Report make_report(const Scene& scene, const SceneSolution& s) {
   report.solver_error_bound = s.patches.error_bound;
   report.form_factor_error = s.form_factor_error;
   report.energy_balance_defect = s.energy_balance_defect;
-  if (s.closed) report.closure_max_defect = s.statistics.closure_max_defect;
+  if (s.closed && s.measured_points > 0) report.closure_max_defect = s.statistics.closure_max_defect;
   report.measured_points = s.measured_points;
   report.covered_points = s.statistics.covered_points;
   report.reciprocity_max_defect = s.reciprocity_max_defect;
