@@ -41,12 +41,13 @@ struct ShootSolution {
 /// The exitance shot so far solves the system but for exactly the unshot one, so ‖B − B*‖∞ ≤ ‖unshot‖∞ / (1 − max ρ),
 /// rounding added; it stops when that is within the tolerance, when only rounding is left, at max_shots or when `stop`
 /// says so (`converged` is false then). That rows of F sum to at most 1 is part of the bound and cannot be checked
-/// before all columns are known: throws InvalidSystem as soon as those seen sum to more than 1 plus their errors in
+/// before all columns are known: throws InvalidSystem as soon as those seen sum to more than 1 plus their errors (and
+/// row_sum_rounding) in
 /// some element. Throws std::invalid_argument on a tolerance that is not positive. Any number of threads gives the same
 /// bits.
 ShootSolution shoot(const Discretisation& discretisation, const ShootColumn& column, const ShootOptions& options = {});
 
-/// Ambient exitance estimate of each band (the paper's section 4.3): what the unshot energy becomes by all its
+/// Ambient exitance estimate of each band (Cohen et al.): what the unshot energy becomes by all its
 /// reflections when spread evenly, Σ A unshot / Σ A / (1 − Σ A ρ / Σ A). For display only: show B_p + ρ_p · ambient.
 std::vector<double> ambient_estimate(const Discretisation& discretisation, std::span<const double> unshot);
 
