@@ -25,7 +25,7 @@ void View::look_from(const Receiver& receiver) {
 
 bool View::excluded(std::uint32_t facet) const {
   if (receiver_.facet == kNone) return false;
-  if (soup_.facets()[facet].polygon == soup_.facets()[receiver_.facet].polygon) return true;
+  if (facet == receiver_.facet) return true;  // facets of one polygon that is bent see each other
   const auto coplanar = soup_.coplanar(receiver_.facet);
   return std::binary_search(coplanar.begin(), coplanar.end(), facet);
 }

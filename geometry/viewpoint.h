@@ -20,7 +20,7 @@ struct Source {
 enum class Side : std::uint8_t { front, back, edge_on };
 
 enum class Visibility : std::uint8_t {
-  away,     ///< below the receiver's horizon, edge-on, or the receiver's own polygon: nothing can be seen
+  away,     ///< below the receiver's horizon, edge-on, or in the receiver's own plane: nothing can be seen
   open,     ///< no occluder reaches between: closed form
   partial,  ///< occluders hide some of it
   blocked   ///< nothing is left
