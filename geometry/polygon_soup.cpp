@@ -204,7 +204,7 @@ void PolygonSoup::find_coplanar() {
     std::sort(near.begin(), near.end());
     const Plane& plane = facets_[f].plane;
     for (const auto t : near) {
-      if (facets_[t].polygon == facets_[f].polygon || roles_[facets_[t].polygon] == Role::unoccluding) continue;
+      if (t == f || roles_[facets_[t].polygon] == Role::unoccluding) continue;
       const auto in_plane = [&](const Corner& c) { return side_of(plane, vertices_[c.vertex], counts) == 0; };
       const auto c = corners(facets_[t]);
       if (std::all_of(c.begin(), c.end(), in_plane)) coplanar_.push_back(t);
@@ -227,6 +227,7 @@ void PolygonSoup::build_index() {
 }
 
 bool PolygonSoup::covers(std::uint32_t t, std::uint32_t f) const {
+  if (facets_[t].polygon == facets_[f].polygon) return false;
   const bool same_facing = dot(facets_[t].plane.normal, facets_[f].plane.normal) > 0;
   switch (roles_[facets_[t].polygon]) {
     case Role::patch:

@@ -81,12 +81,12 @@ class PolygonSoup {
   /// back face: back faces hide nothing that front faces do not.
   std::span<const Shell> shells() const { return shells_; }
 
-  /// Facets of other polygons that lie exactly in the plane of facet f and touch its box, ascending.
+  /// Other facets that lie exactly in the plane of facet f and touch its box, ascending.
   std::span<const std::uint32_t> coplanar(std::uint32_t f) const {
     return {coplanar_.data() + coplanar_first_[f], coplanar_.data() + coplanar_first_[f + 1]};
   }
 
-  /// Whether facet t, one of coplanar(f), covers f where they overlap.
+  /// Whether facet t, one of coplanar(f), covers f where they overlap. Facets of one polygon never do.
   bool covers(std::uint32_t t, std::uint32_t f) const;
 
   /// Of all that occludes: item k is facet k, or shell k − facets().size() where that is convex; the facets of convex

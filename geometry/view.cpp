@@ -14,16 +14,18 @@ void View::look_from(const Receiver& receiver) {
     std::fill(vertices_.begin(), vertices_.end(), Seen{});
     epoch_ = 1;
   }
-  covered_ = false;
+  covered_ = in_contact_ = false;
   if (receiver.facet == kNone) return;
   for (const std::uint32_t t : soup_.coplanar(receiver.facet)) {
-    covered_ = covered_ || (soup_.covers(t, receiver.facet) && holds_receiver(t));
+    if (!holds_receiver(t)) continue;
+    covered_ = covered_ || soup_.covers(t, receiver.facet);
+    in_contact_ = in_contact_ || dot(soup_.facets()[t].plane.normal, soup_.facets()[receiver.facet].plane.normal) < 0;
   }
 }
 
 bool View::excluded(std::uint32_t facet) const {
   if (receiver_.facet == kNone) return false;
-  if (soup_.facets()[facet].polygon == soup_.facets()[receiver_.facet].polygon) return true;
+  if (facet == receiver_.facet) return true;  // facets of one polygon that is bent see each other
   const auto coplanar = soup_.coplanar(receiver_.facet);
   return std::binary_search(coplanar.begin(), coplanar.end(), facet);
 }

@@ -9,7 +9,7 @@
 namespace exitance {
 
 /// A point that receives, with the normal of its surface (any length but zero). A point of a facet lies on it by identity,
-/// not by sign: it names the facet, and then neither that facet's polygon nor what lies in its plane hides anything from it.
+/// not by sign: it names the facet, and then neither that facet nor what lies in its plane hides anything from it.
 struct Receiver {
   Vec3 point;
   Vec3 normal;
@@ -30,7 +30,7 @@ class View {
   /// Counts the views, so that what was computed for one can be told from what belongs to another.
   std::uint32_t epoch() const { return epoch_; }
 
-  /// Whether a facet is of the receiver's own polygon or lies in its plane: it can't be seen and hides nothing.
+  /// Whether a facet is the receiver's own or lies in its plane: it can't be seen and hides nothing.
   bool excluded(std::uint32_t facet) const;
 
   /// The side from which an occluding facet is seen: +1 front, −1 back, 0 when it hides nothing from here that others do not
@@ -49,6 +49,10 @@ class View {
   /// Whether something that lies in the receiver's plane covers it.
   bool covered() const { return covered_; }
 
+  /// Whether the receiver lies within a facet in its plane that faces against its own: two solids in contact, or the two
+  /// sides of a sheet.
+  bool in_contact() const { return in_contact_; }
+
  private:
   struct Seen {
     std::uint32_t epoch = 0;
@@ -61,7 +65,7 @@ class View {
   Receiver receiver_;
   StageCounts counts_;
   std::uint32_t epoch_ = 0;
-  bool covered_ = false;
+  bool covered_ = false, in_contact_ = false;
   std::vector<Seen> facets_, vertices_;
 };
 

@@ -346,9 +346,8 @@ template <class Real>
 typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_t facet) {
   const auto facets = soup_.facets();
   const Facet& f = facets[facet];
-  const std::uint32_t source_polygon = facets[source_facet_].polygon;
   const int facing = view_.facing(facet);
-  if (facing == 0 || f.polygon == source_polygon) return Effect::none;
+  if (facing == 0 || facet == source_facet_) return Effect::none;
   const auto vertices = soup_.vertices();
   const auto loop = soup_.corners(f);
   if (std::none_of(loop.begin(), loop.end(), [&](const Corner& c) { return view_.horizon(c.vertex) > 0; })) {
@@ -406,7 +405,7 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
   for (const auto& side : added.cone->sides) {
     added.edges.push_back(side.stretch);
     const std::uint32_t n = side.across;
-    added.edges.back().empty = n != kNone && facets[n].polygon != source_polygon &&
+    added.edges.back().empty = n != kNone && n != source_facet_ &&
                                (!covers || facets[n].polygon == f.polygon) && view_.facing(n) == facing;
   }
   return add_cone(added);

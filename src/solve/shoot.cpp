@@ -204,7 +204,8 @@ ShootSolution shoot(const Discretisation& d, const ShootColumn& column, const Sh
   };
   double shown = 0;
   std::uint64_t shots = 0;
-  while (shots < options.max_shots && !solved() && !state.only_rounding_is_left(options.tolerance)) {
+  const auto stopped = [&] { return shots >= options.max_shots || (options.stop && options.stop()); };
+  while (!stopped() && !solved() && !state.only_rounding_is_left(options.tolerance)) {
     state.shoot_strongest(column);
     ++shots;
     if (options.progress) {

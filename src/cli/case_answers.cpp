@@ -1,0 +1,245 @@
+#include "src/cli/case_answers.h"
+
+#include <cmath>
+#include <string>
+
+#include "src/cli/case_reader.h"
+#include "src/cli/patch_radiosity.h"
+#include "src/form_factor/area_form_factors.h"
+
+namespace exitance {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void answer_point_polygon(const nlohmann::json& question, double tolerance, Json& result) {
+  const PointAnswer a = answer(read_point_question(question), tolerance);
+  result["F"] = a.F;
+  result["F_error"] = a.F_error;
+  result["reached"] = a.F_error <= tolerance;
+}
+
+void answer_polygon_polygon(const nlohmann::json& what, double tolerance, Json& result) {
+  const PolygonQuestion question = read_polygon_question(what);
+  ExactScale scale;
+  scale.include(question.receiver);
+  scale.include(question.source);
+  for (const Obstacle& o : question.occluders) {
+    for (const Polygon& face : o.faces) scale.include(face);
+  }
+  const int exponent = scale.exponent();
+  QuestionScene scene;
+  if (!scene.add(ExactScale::scaled(question.receiver, exponent), Role::patch, "receiver")) {
+    throw InvalidCase("receiver: it has no area");
+  }
+  const bool has_source = scene.add(ExactScale::scaled(question.source, exponent), Role::patch, "source");
+  scene.add(question.occluders, exponent);
+  PairFormFactor f;
+  if (has_source) {
+    const AreaScene area_scene(scene.polygons, scene.roles);
+    AreaViews views = area_scene.views();
+    f = pair_form_factor(area_scene, views, 0, 1, tolerance, points_per_integral(1));
+  }
+  result["F"] = f.F;
+  result["F_error"] = f.F_error;
+  result["F_reverse"] = f.F_reverse;
+  result["F_reverse_error"] = f.F_reverse_error;
+  result["reached"] = f.reached;
+}
+
+/// The patches that are there, and their form factors; areas in units of 2^(2 · exponent).
+struct Enclosure {
+  std::vector<std::size_t> present;  ///< ascending
+  AreaFormFactors form_factors;      ///< of those
+  int exponent = 0;
+};
+
+Enclosure enclose(const CasePatches& given, const std::string& path, double tolerance) {
+  Enclosure result;
+  ExactScale scale;
+  for (const CasePatch& patch : given.patches) {
+    if (!patch.absent) scale.include(patch.polygon);
+  }
+  result.exponent = scale.exponent();
+  QuestionScene scene;
+  for (std::size_t p = 0; p < given.patches.size(); ++p) {
+    if (given.patches[p].absent) continue;
+    const std::string name = path + "patches[" + std::to_string(p) + "]";
+    if (!scene.add(ExactScale::scaled(given.patches[p].polygon, result.exponent), Role::patch, name)) {
+      throw InvalidCase(name + ": it has no area");
+    }
+    result.present.push_back(p);
+  }
+  result.form_factors = area_form_factors(AreaScene(scene.polygons, scene.roles), tolerance);
+  return result;
+}
+
+void answer_enclosure(const nlohmann::json& question, double tolerance, Json& result) {
+  const CasePatches given = read_patches(question, "", false);
+  const Enclosure enclosure = enclose(given, "", tolerance);
+  const AreaFormFactors& f = enclosure.form_factors;
+  const std::size_t n = given.patches.size();
+  std::vector<std::vector<double>> F(n, std::vector<double>(n)), F_error = F;
+  std::vector<double> A(n);
+  for (std::size_t i = 0; i < f.n; ++i) {
+    const std::size_t p = enclosure.present[i];
+    A[p] = std::ldexp(f.area[i], 2 * enclosure.exponent);
+    if (!std::isnormal(A[p])) throw InvalidCase("patches[" + std::to_string(p) + "]: its area is out of range");
+    for (std::size_t j = 0; j < f.n; ++j) {
+      F[p][enclosure.present[j]] = f.F[i * f.n + j];
+      F_error[p][enclosure.present[j]] = f.F_error[i * f.n + j];
+    }
+  }
+  result["F"] = F;
+  result["F_error"] = F_error;
+  result["A"] = A;
+  result["reached"] = f.reached;
+}
+
+/// Solution of an enclosure, for all patches given, absent ones with zeros.
+struct SolvedEnclosure {
+  Enclosure enclosure;
+  PatchRadiosity values;
+};
+
+SolvedEnclosure solve(const CasePatches& given, const std::string& path, double tolerance) {
+  SolvedEnclosure solved{enclose(given, path, tolerance), {}};
+  std::vector<double> E, rho;
+  for (const std::size_t p : solved.enclosure.present) {
+    E.insert(E.end(), given.patches[p].E.begin(), given.patches[p].E.end());
+    rho.insert(rho.end(), given.patches[p].rho.begin(), given.patches[p].rho.end());
+  }
+  const PatchRadiosity found = patch_radiosity(solved.enclosure.form_factors, E, rho, given.bands);
+  const auto spread = [&](const std::vector<double>& values) {
+    std::vector<double> all(given.patches.size() * given.bands);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      all[solved.enclosure.present[i / given.bands] * given.bands + i % given.bands] = values[i];
+    }
+    return all;
+  };
+  solved.values = {spread(found.B), spread(found.H), spread(found.B_error)};
+  return solved;
+}
+
+/// One number a patch, or one list of bands.
+Json by_patch(const std::vector<double>& values, const CasePatches& given) {
+  if (!given.bands_in_lists) return values;
+  Json rows = Json::array();
+  for (std::size_t p = 0; p < given.patches.size(); ++p) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(p * given.bands);
+    rows.push_back(std::vector<double>(first, first + static_cast<std::ptrdiff_t>(given.bands)));
+  }
+  return rows;
+}
+
+void answer_radiosity(const nlohmann::json& question, double tolerance, Json& result) {
+  const CasePatches given = read_patches(question, "", true);
+  const SolvedEnclosure solved = solve(given, "", tolerance);
+  result["B"] = by_patch(solved.values.B, given);
+  result["H"] = by_patch(solved.values.H, given);
+  result["B_error"] = by_patch(solved.values.B_error, given);
+  result["reached"] = solved.enclosure.form_factors.reached;
+}
+
+/// What every patch receives of B before, by form factors before (sign −1) or after (+1), with the error of that sum.
+void add_irradiance(const SolvedEnclosure& solved, double sign, const std::vector<double>& B, std::size_t bands,
+                    std::vector<double>& H, std::vector<double>& H_error) {
+  const auto& [present, f, exponent] = solved.enclosure;
+  for (std::size_t i = 0; i < f.n; ++i) {
+    for (std::size_t j = 0; j < f.n; ++j) {
+      for (std::size_t b = 0; b < bands; ++b) {
+        const double Bj = B[present[j] * bands + b];
+        H[present[i] * bands + b] += sign * f.F[i * f.n + j] * Bj;
+        H_error[present[i] * bands + b] += f.F_error[i * f.n + j] * std::fabs(Bj);
+      }
+    }
+  }
+}
+
+/// The change of form factors of a pair is at most what both sides have of it: Σ_j |ΔF_ij| δB_j.
+void add_uncertain_source(const SolvedEnclosure& before, const SolvedEnclosure& after, std::size_t bands,
+                          std::vector<double>& H_error) {
+  const std::size_t n = before.values.B.size() / bands;
+  std::vector<double> change(n * n);
+  for (const auto& [solved, sign] : {std::pair{&before, -1.0}, std::pair{&after, 1.0}}) {
+    const auto& [present, f, exponent] = solved->enclosure;
+    for (std::size_t i = 0; i < f.n; ++i) {
+      for (std::size_t j = 0; j < f.n; ++j) change[present[i] * n + present[j]] += sign * f.F[i * f.n + j];
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t b = 0; b < bands; ++b) {
+        H_error[i * bands + b] += std::fabs(change[i * n + j]) * before.values.B_error[j * bands + b];
+      }
+    }
+  }
+}
+
+/// R of George, Sillion and Greenberg 1990, eq. 5, with ρ_i as the equation needs it, and ΔB (eq. 6) as the difference
+/// of the two solutions.
+void answer_dynamic(const nlohmann::json& question, double tolerance, Json& result) {
+  for (const char* side : {"before", "after"}) {
+    if (!question.contains(side)) throw InvalidCase(std::string("the key \"") + side + "\" is missing");
+  }
+  const CasePatches given_before = read_patches(question["before"], "before", true);
+  const CasePatches given_after = read_patches(question["after"], "after", true);
+  if (given_before.patches.size() != given_after.patches.size()) {
+    throw InvalidCase("after.patches: must list the same patches as before.patches, in the same order");
+  }
+  if (given_before.bands != given_after.bands) throw InvalidCase("after.patches: must have as many bands as before");
+  const std::size_t bands = given_before.bands;
+  const SolvedEnclosure before = solve(given_before, "before.", tolerance);
+  const SolvedEnclosure after = solve(given_after, "after.", tolerance);
+
+  const std::size_t size = before.values.B.size();
+  std::vector<double> R(size), R_error(size), dB(size), dB_error(size);
+  add_irradiance(before, -1, before.values.B, bands, R, R_error);
+  add_irradiance(after, 1, before.values.B, bands, R, R_error);
+  add_uncertain_source(before, after, bands, R_error);
+  for (std::size_t i = 0; i < size; ++i) {
+    const double rho = given_after.patches[i / bands].rho[i % bands];
+    R[i] *= rho;
+    R_error[i] *= rho;
+    dB[i] = after.values.B[i] - before.values.B[i];
+    dB_error[i] = after.values.B_error[i] + before.values.B_error[i];
+  }
+  CasePatches shape = given_before;
+  shape.bands_in_lists = given_before.bands_in_lists || given_after.bands_in_lists;
+  result["R"] = by_patch(R, shape);
+  result["R_error"] = by_patch(R_error, shape);
+  result["dB"] = by_patch(dB, shape);
+  result["dB_error"] = by_patch(dB_error, shape);
+  result["B_before"] = by_patch(before.values.B, shape);
+  result["B_after"] = by_patch(after.values.B, shape);
+  result["reached"] = before.enclosure.form_factors.reached && after.enclosure.form_factors.reached;
+}
+
+void answer_kind(const nlohmann::json& question, double tolerance, Json& result) {
+  if (!question.is_object()) throw InvalidCase("a case must be an object");
+  if (!question.contains("kind")) throw InvalidCase("the key \"kind\" is missing");
+  if (!question["kind"].is_string()) throw InvalidCase("kind: must be a string");
+  const auto kind = question["kind"].get<std::string>();
+  if (kind == "point_polygon") return answer_point_polygon(question, tolerance, result);
+  if (kind == "polygon_polygon") return answer_polygon_polygon(question, tolerance, result);
+  if (kind == "enclosure") return answer_enclosure(question, tolerance, result);
+  if (kind == "radiosity") return answer_radiosity(question, tolerance, result);
+  if (kind == "dynamic") return answer_dynamic(question, tolerance, result);
+  throw InvalidCase("kind: \"" + kind +
+                    "\" is not known; there are point_polygon, polygon_polygon, enclosure, radiosity and dynamic");
+}
+
+}  // namespace
+
+Json answer_case(const nlohmann::json& question, double tolerance) {
+  const Json id = question.is_object() && question.contains("id") ? Json(question["id"]) : Json(nullptr);
+  try {
+    Json result{{"id", id}, {"status", "ok"}};
+    answer_kind(question, tolerance, result);
+    return result;
+  } catch (const std::exception& wrong) {
+    return {{"id", id}, {"status", "error"}, {"message", wrong.what()}};
+  }
+}
+
+}  // namespace exitance

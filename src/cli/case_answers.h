@@ -1,0 +1,12 @@
+#pragma once
+// Answers to single questions.
+
+#include <nlohmann/json.hpp>
+
+namespace exitance {
+
+/// The answer to one case: its id and status, and what was asked or the message of what is wrong with it. Throws
+/// nothing that one case could cause.
+nlohmann::ordered_json answer_case(const nlohmann::json& question, double tolerance);
+
+}  // namespace exitance
