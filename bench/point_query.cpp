@@ -45,7 +45,7 @@ struct Questions {
   static void require_agreement(const Pair& pair, const PointFormFactor& exact, const SampledFormFactor& sampled,
                                 const SampledFormFactor& farther) {
     const double allowed = 6 * (sampled.standard_error + farther.standard_error) + std::fabs(sampled.F - farther.F) +
-                           10.0 / (16 * 1024) * sampled.F_unoccluded;
+                           10.0 / (16 * 1024) * sampled.F_unoccluded + 1e-14;
     if (std::fabs(exact.F - sampled.F) <= allowed + exact.error) return;
     const Vec3 x = pair.receiver.point;
     throw std::runtime_error(fmt::format(
