@@ -66,7 +66,7 @@ void measure(benchmark::State& state, const Hemispheres& h) {
 }
 
 std::size_t view_count(std::int64_t polygons) {
-  return polygons > 10000 ? 2 : 8;
+  return polygons > 10000 ? 4 : 8;
 }
 
 void hemisphere(benchmark::State& state) {

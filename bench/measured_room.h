@@ -24,9 +24,9 @@ namespace exitance {
 /// Rays that one exact answer is compared with.
 inline constexpr std::uint32_t kRays = 64;
 
-/// A number below n from a seeded generator; n is small against 2^64.
+/// A number below n, at the same fraction of n for the same random bits: of a scene cut finer, about the same place.
 inline std::size_t below(std::mt19937_64& random, std::size_t n) {
-  return random() % n;
+  return static_cast<std::size_t>(static_cast<double>(random() >> 11) * 0x1p-53 * static_cast<double>(n));
 }
 
 struct MeasuredRoom {
