@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 #include <immintrin.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <boost/container/small_vector.hpp>
@@ -140,7 +141,9 @@ struct RaySampledVisibility::EmbreeScene {
     rtcSetSceneFlags(scene.get(), options.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
     add_triangles(soup);
-    rtcCommitScene(scene.get());
+    // Embree builds its hierarchy with TBB while it flushes denormal numbers, and TBB takes the mode in which a thread
+    // first uses it for all later tasks of that thread. So TBB must be in use before.
+    tbb::task_arena().execute([&] { rtcCommitScene(scene.get()); });
     check();
   }
 

@@ -19,9 +19,9 @@ struct RayOptions {
   bool robust = true;            ///< no leaks between triangles that share an edge
   /// By how much of the scene's radius both ends of a ray are moved off their surfaces, along the normals, lest the ray
   /// hits the surface it starts from or goes to; ≥ 0. What lies nearer to a surface than this is not seen as in front
-  /// of it, and F errs in proportion to it. The default is four roundings of a coordinate: with half as much rays begin
-  /// to hit their own surfaces.
-  double offset = 0x1p-22;
+  /// of it, and F errs in proportion to it. The default is 16 roundings of a coordinate; with four, some rays still hit
+  /// their own surfaces.
+  double offset = 0x1p-20;
 };
 
 /// A form factor as rays estimate it.
