@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -12,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-struct Run {
+struct Outcome {
   int code = 0;
   std::string out, err;
   Json results() const { return Json::parse(out)["results"]; }
@@ -20,11 +21,11 @@ struct Run {
 
 class Cases : public testing::Test {
  protected:
-  Run run(const std::string& text, const std::string& options = "") {
+  Outcome run(const std::string& text, const std::string& options = "") {
     std::ofstream(folder_ / "cases.json") << text;
     return run_file((folder_ / "cases.json").string(), options);
   }
-  Run run_file(const std::string& file, const std::string& options = "") {
+  Outcome run_file(const std::string& file, const std::string& options = "") {
     const std::string out = (folder_ / "out").string(), err = (folder_ / "err").string();
     const std::string command =
         std::string(EXITANCE_PROGRAM) + " cases " + file + " " + options + " > " + out + " 2> " + err;
@@ -33,7 +34,7 @@ class Cases : public testing::Test {
   }
   /// The answer to one case, which must be the only one.
   Json answer(const std::string& one, const std::string& options = "") {
-    const Run r = run("{\"cases\":[" + one + "]}", options);
+    const Outcome r = run("{\"cases\":[" + one + "]}", options);
     const Json results = r.results();
     EXPECT_EQ(results.size(), 1u);
     EXPECT_EQ(r.code, results[0]["status"] == "ok" ? 0 : 3);
@@ -184,8 +185,9 @@ TEST_F(Cases, DynamicOfAPlateThatComesAndGoes) {
 
 TEST_F(Cases, OneBadCaseLeavesTheOthers) {
   const std::string good = point_case("[0,0,0]", "[0,0,1]", kCeiling);
-  const Run r = run("{\"cases\":[" + good + "," + point_case("[0,0,NaN]", "[0,0,1]", kCeiling, "[]", R"("NaN: \"")") +
-                    "," + good + "," + point_case("[1e999,0,0]", "[0,0,1]", kCeiling, "[]", "7") + ",5," + good + "]}");
+  const Outcome r =
+      run("{\"cases\":[" + good + "," + point_case("[0,0,NaN]", "[0,0,1]", kCeiling, "[]", R"("NaN: \"")") + "," +
+          good + "," + point_case("[1e999,0,0]", "[0,0,1]", kCeiling, "[]", "7") + ",5," + good + "]}");
   EXPECT_EQ(r.code, 3);
   const Json results = r.results();
   ASSERT_EQ(results.size(), 6u);
@@ -219,7 +221,7 @@ TEST_F(Cases, EveryRuleIsNamedWhenBroken) {
             "occluders[0].polyhedron[0][2][2]: must be a number");
   EXPECT_EQ(complaint(R"({"kind":"point_polygon"})"), "the key \"receiver\" is missing");
   EXPECT_EQ(complaint(R"({"id":1})"), "the key \"kind\" is missing");
-  EXPECT_EQ(complaint(R"({"kind":"polygon"})").substr(0, 25), "kind: \"polygon\" is not kno");
+  EXPECT_EQ(complaint(R"({"kind":"polygon"})").substr(0, 25), "kind: \"polygon\" is not kn");
   const auto patches = [](const std::string& kind, const std::string& list) {
     return R"({"kind":")" + kind + R"(","patches":[)" + list + "]}";
   };
@@ -239,7 +241,7 @@ TEST_F(Cases, EveryRuleIsNamedWhenBroken) {
 }
 
 TEST_F(Cases, FilesThatCannotBeUsedAreRefusedInOneLine) {
-  const auto refused = [](const Run& r, const std::string& part) {
+  const auto refused = [](const Outcome& r, const std::string& part) {
     EXPECT_EQ(r.code, 3);
     EXPECT_EQ(r.out, "");
     EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
@@ -259,7 +261,7 @@ TEST_F(Cases, FilesThatCannotBeUsedAreRefusedInOneLine) {
 
 TEST_F(Cases, AnEarlierAnswerStaysUntilThereIsANewOne) {
   const std::string out = (folder_ / "answers.json").string();
-  const Run first = run("{\"cases\":[" + point_case("[0,0,0]", "[0,0,1]", kCeiling) + "]}", "-o " + out);
+  const Outcome first = run("{\"cases\":[" + point_case("[0,0,0]", "[0,0,1]", kCeiling) + "]}", "-o " + out);
   EXPECT_EQ(first.code, 0);
   EXPECT_EQ(first.out, "");
   const std::string before = contents(out);
