@@ -30,6 +30,11 @@ class Chart {
     u_ = cross(axis_, other);
     u_ = (1 / norm(u_)) * u_;
     v_ = cross(axis_, u_);
+    source_ = box_of(source);
+  }
+
+  bool meets_source(const ChartBox& box) const {
+    return source_.x0 <= box.x1 && box.x0 <= source_.x1 && source_.y0 <= box.y1 && box.y0 <= source_.y1;
   }
 
   template <class Real>
@@ -37,6 +42,7 @@ class Chart {
     ChartBox box{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
                  std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (const auto& c : cone.corners) {
+      if (!c.kept) continue;
       const Vec<double> w = rounded(c.w);
       const double depth = dot(axis_, w);
       if (!(depth > 1e-3 * static_cast<double>(c.length))) return {};
@@ -83,6 +89,7 @@ class Chart {
   }
 
   Vec<double> axis_, u_, v_;
+  ChartBox source_;
   std::vector<double> x0_, x1_, y0_, y1_;
 };
 

@@ -73,9 +73,11 @@ struct ConeSide {
   Real length{};  ///< |m|
   Real error{};   ///< |m − true m| ≤ error and |m · w − true| ≤ error |w| for a corner without error
   ViewPlane exact;
+  Real sweep{1};  ///< bound of |dθ/dt| along the edge, θ the angle under which x sees it
   std::uint32_t from = 0, to = 0;  ///< corners
   Stretch<Real> stretch;           ///< of the edge between them that bounds the cone
-  bool bounds = true;              ///< false where a neighbour carries on, so that the edge bounds nothing
+  std::uint32_t across = 0xffffffffu;  ///< facet that shares the edge; none: kNone
+  bool below_horizon = false;      ///< neither corner is above the receiver's horizon
 };
 
 template <class Real>
@@ -108,6 +110,11 @@ void set_edge_plane(ConeSide<Real>& side, const Vec3& x, const ConeCorner<Real>&
   side.length = norm(side.m);
   side.error = 12 * roundoff<Real>() * (c.length < d.length ? c.length : d.length) * norm(e);
   side.exact = {ViewPlane::Kind::edge, sign, c.exact.a, d.exact.a, {}};
+  // dθ/dt = |m| / |w(t)|², and the nearest that the edge comes is |m| / |e| when its foot lies between its corners.
+  const Real length = norm(e);
+  const bool foot_between = dot(c.w, e) < 0 && dot(d.w, e) > 0;
+  const Real nearest = foot_between ? Real(side.length / length) : (c.length < d.length ? c.length : d.length);
+  side.sweep = side.length / (nearest * nearest);
   if constexpr (std::is_same_v<Real, double>) {
     if (side.error > 0x1p-44 * side.length) {  // the edge's line passes near x
       const Vec3 m = sign * exact_cross(x, *c.exact.a, *d.exact.a);
@@ -145,9 +152,10 @@ Signed<Real> value_at(const ConeSide<Real>& side, const ConeCorner<Real>& corner
 }
 
 /// Narrows the stretch to where the linear function from a (at 0) to b (at 1) is positive. Both zero is the caller's case.
-/// refine(): called when the crossing is ill-conditioned, to make a and b more exact.
+/// refine(): called when the crossing is ill-conditioned, to make a and b more exact. sweep: how much of an angle an error of
+/// the parameter costs.
 template <class Real, class Refine>
-void narrow(Stretch<Real>& stretch, Signed<Real>& a, Signed<Real>& b, const Refine& refine) {
+void narrow(Stretch<Real>& stretch, Signed<Real>& a, Signed<Real>& b, const Real& sweep, const Refine& refine) {
   using std::fabs;
   if (a.sign <= 0 && b.sign <= 0) {
     stretch.empty = true;
@@ -161,7 +169,7 @@ void narrow(Stretch<Real>& stretch, Signed<Real>& a, Signed<Real>& b, const Refi
                  : Real(1);
     };
     Real error = error_of_crossing();
-    if (error > 128 * roundoff<Real>()) {
+    if (error * sweep > 64 * roundoff<Real>() || error > 0x1p-20) {
       refine();
       error = error_of_crossing();
     }
@@ -213,7 +221,7 @@ void clip(Cone<Real>& cone, const std::vector<Signed<Real>>& weight, ViewPoint::
     const Signed<Real>&a = weight[side.from], &b = weight[side.to];
     if (a.sign * b.sign < 0) {
       Signed<Real> from = a, to = b;
-      narrow(side.stretch, from, to, [] {});
+      narrow(side.stretch, from, to, side.sweep, [] {});
       const std::uint32_t point = crossing(side, side.stretch, inside ? side.stretch.hi : side.stretch.lo);
       if (!inside) close(exit, point);
       exit = point;

@@ -3,7 +3,8 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -116,27 +117,69 @@ std::vector<DirectedEdge> cut_at_vertices(const std::vector<DirectedEdge>& edges
   return pieces;
 }
 
-// The edges of a group that remain when edges of opposite direction have cancelled, those of one piece first.
-void settle_group(std::span<const DirectedEdge> group, DisjointSets& sets, std::vector<DirectedEdge>& open) {
-  std::map<std::uint32_t, int> net_of_piece;
-  for (const DirectedEdge& e : group) net_of_piece[sets.root(e.polygon)] += runs_up(e) ? 1 : -1;
-  const bool any_up = std::ranges::any_of(net_of_piece, [](const auto& piece) { return piece.second > 0; });
-  const bool any_down = std::ranges::any_of(net_of_piece, [](const auto& piece) { return piece.second < 0; });
-  if (any_up && any_down) {
-    std::uint32_t joined = 0xffffffffu;
-    for (const auto& [piece, net] : net_of_piece) {
-      if (net == 0) continue;
-      if (joined != 0xffffffffu) sets.unite(joined, piece);
-      joined = piece;
-    }
-    net_of_piece.clear();
-    for (const DirectedEdge& e : group) net_of_piece[sets.root(e.polygon)] += runs_up(e) ? 1 : -1;
-  }
+// An edge as it leaves the common line of its group: in which direction its polygon lies, seen along the line.
+struct Wing {
+  double angle = 0;
+  bool up = false;
+  const DirectedEdge* edge = nullptr;
+  bool matched = false;
+};
+
+// Sorted by angle, and where wings lie on each other those first whose back lies on the side where the angles are
+// smaller.
+std::vector<Wing> sort_round_line(std::span<const DirectedEdge> group, std::span<const Polygon> polygons) {
+  // Wings of faces in contact differ by rounding only.
+  constexpr double kSameAngle = 1e-9;
+  constexpr double kFullTurn = 2 * std::numbers::pi;
+  const DirectedEdge& first = group.front();
+  const Vec3 along = normalized(runs_up(first) ? first.to - first.from : first.from - first.to);
+  // A polygon lies to the left of its edge.
+  const auto direction = [&](const DirectedEdge& e) {
+    const Vec3 left = cross(area_vector(polygons[e.polygon]), along);
+    return runs_up(e) ? left : -left;
+  };
+  const Vec3 zero = direction(first);
+  std::vector<Wing> wings;
   for (const DirectedEdge& e : group) {
-    int& net = net_of_piece[sets.root(e.polygon)];
-    if (net == 0 || (net > 0) != runs_up(e)) continue;
-    open.push_back(e);
-    net += net > 0 ? -1 : 1;
+    const Vec3 d = direction(e);
+    double angle = std::atan2(dot(cross(zero, d), along), dot(zero, d));
+    if (angle < -kSameAngle) angle += kFullTurn;
+    wings.push_back({.angle = angle, .up = runs_up(e), .edge = &e});
+  }
+  std::ranges::stable_sort(wings, {}, &Wing::angle);
+  for (std::size_t i = 1; i < wings.size(); ++i) {
+    if (wings[i].angle - wings[i - 1].angle < kSameAngle) wings[i].angle = wings[i - 1].angle;
+  }
+  // The order of equal ones is that of brackets, so that faces that are there twice pair the same way along all their
+  // edges.
+  std::ranges::stable_sort(wings, {}, [](const Wing& w) {
+    const auto polygon = static_cast<std::int64_t>(w.edge->polygon);
+    return std::tuple{w.angle, !w.up, w.up ? -polygon : polygon};
+  });
+  return wings;
+}
+
+// Wings cancel in pairs that have matter behind them: going round the line, matter begins at an edge that runs down and
+// ends at one that runs up. So solids that touch, and a solid that stands in the corner of a room, stay apart. What
+// finds no partner is open.
+void match_round_line(std::span<const DirectedEdge> group, std::span<const Polygon> polygons, DisjointSets& sets,
+                      std::vector<DirectedEdge>& open) {
+  std::vector<Wing> wings = sort_round_line(group, polygons);
+  std::vector<Wing*> begun;
+  for (int round = 0; round < 2; ++round) {
+    for (Wing& wing : wings) {
+      if (wing.matched) continue;
+      if (!wing.up) {
+        if (round == 0) begun.push_back(&wing);
+      } else if (!begun.empty()) {
+        sets.unite(wing.edge->polygon, begun.back()->edge->polygon);
+        wing.matched = begun.back()->matched = true;
+        begun.pop_back();
+      }
+    }
+  }
+  for (const Wing& wing : wings) {
+    if (!wing.matched) open.push_back(*wing.edge);
   }
 }
 
@@ -175,7 +218,8 @@ EdgeMatching match_edges(std::span<const Polygon> polygons) {
 
   EdgeMatching matching;
   sort_by_ends(crowded);
-  for_each_group(crowded, [&](std::span<const DirectedEdge> group) { settle_group(group, sets, matching.open); });
+  for_each_group(crowded,
+                 [&](std::span<const DirectedEdge> group) { match_round_line(group, polygons, sets, matching.open); });
 
   matching.piece.resize(polygons.size());
   for (std::uint32_t i = 0; i < polygons.size(); ++i) {

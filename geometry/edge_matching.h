@@ -25,8 +25,9 @@ struct EdgeMatching {
 
 /// Two edges cancel where they run along each other in opposite directions. Edges are equal only if their coordinates
 /// are (−0 equals 0). A vertex that lies exactly on an edge cuts it (T-junction), so a long edge may be cancelled by
-/// several short ones. Where more than two edges meet, those of one piece cancel first: two boxes that touch along an
-/// edge stay two pieces. Repeated vertices make no edge. Takes n log n in the edges. REQUIRES: finite coordinates.
+/// several short ones. Where more than two edges meet, those cancel that bound matter between their backs: two boxes
+/// that touch along an edge, or with a whole face, stay two pieces. Repeated vertices make no edge. Takes n log n in
+/// the edges. REQUIRES: finite coordinates.
 EdgeMatching match_edges(std::span<const Polygon> polygons);
 
 /// All edges: the outer loops', and the holes', turned round where needed so that the polygon lies to the left.

@@ -50,6 +50,7 @@ Plane plane_of(std::span<const Vec3> vertices, std::span<const Corner> corners) 
   // |p_i q_j| + |p_j q_i| ≤ |p||q|, each product with two roundings of differences, one of its own and one of the
   // subtraction: 4.01 u |p||q|; 5 covers the rounding of the norms.
   plane.normal_error = 5 * kRoundoff * norm(p) * norm(q);
+  plane.normal_size = std::max({std::fabs(plane.normal.x), std::fabs(plane.normal.y), std::fabs(plane.normal.z)});
   plane.points = {&a, &b, &c};
   for (int axis = 0; axis < 3; ++axis) {
     if (std::all_of(corners.begin(), corners.end(),
@@ -67,10 +68,23 @@ Plane plane_of(std::span<const Vec3> vertices, std::span<const Corner> corners) 
 }  // namespace
 
 int side_of(const Plane& plane, const Vec3& v, StageCounts& counts) {
-  if (plane.axis < 0) return orientation(*plane.points.a, *plane.points.b, *plane.points.c, v, counts);
-  const double c = v[plane.axis], p = plane.origin[plane.axis];
-  ++counts.filter;
-  return c > p ? plane.axis_sign : c < p ? -plane.axis_sign : 0;
+  if (plane.axis >= 0) {
+    const double c = v[plane.axis], p = plane.origin[plane.axis];
+    ++counts.filter;
+    return c > p ? plane.axis_sign : c < p ? -plane.axis_sign : 0;
+  }
+  // The normal's error in each component, and on each product one rounding of the difference, one of its own and at most
+  // two of the sum.
+  const Vec3 w = v - plane.origin;
+  const double value = dot(plane.normal, w);
+  const double bound = (1.01 * plane.normal_error + 5 * kRoundoff * plane.normal_size) *
+                           (std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z)) +
+                       0x1p-1000;
+  if (value > bound || value < -bound) {
+    ++counts.filter;
+    return value > 0 ? 1 : -1;
+  }
+  return orientation(*plane.points.a, *plane.points.b, *plane.points.c, v, counts);
 }
 
 PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role> roles)
@@ -81,6 +95,7 @@ PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role
   find_neighbours();
   find_shells();
   find_coplanar();
+  build_index();
 }
 
 void PolygonSoup::add_facets(std::span<const Polygon> polygons) {
@@ -104,13 +119,7 @@ void PolygonSoup::add_facets(std::span<const Polygon> polygons) {
     }
     first_facet_.push_back(static_cast<std::uint32_t>(facets_.size()));
   }
-  std::vector<Box> boxes(facets_.size());
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    facets_[f].plane = plane_of(vertices_, corners(facets_[f]));
-    if (roles_[facets_[f].polygon] == Role::unoccluding) continue;
-    for (const Corner& c : corners(facets_[f])) boxes[f].extend(vertices_[c.vertex]);
-  }
-  index_ = SpatialIndex(boxes);
+  for (Facet& f : facets_) f.plane = plane_of(vertices_, corners(f));
 }
 
 void PolygonSoup::find_neighbours() {
@@ -135,6 +144,7 @@ void PolygonSoup::find_neighbours() {
 }
 
 void PolygonSoup::find_shells() {
+  StageCounts counts;
   std::vector<bool> visited(facets_.size(), false);
   std::vector<std::uint32_t> component;
   for (std::uint32_t seed = 0; seed < facets_.size(); ++seed) {
@@ -158,24 +168,43 @@ void PolygonSoup::find_shells() {
       }
     }
     if (!closed || triangles.size() < 4 || !bounds_solid(vertices_, triangles)) continue;
-    for (const auto f : component) facets_[f].shell = static_cast<std::uint32_t>(shells_.size());
-    shells_.push_back(box);
+    Shell shell;
+    shell.box = box;
+    shell.facets = component;
+    std::sort(shell.facets.begin(), shell.facets.end());
+    shell.convex = true;
+    for (const auto f : shell.facets) {
+      facets_[f].shell = static_cast<std::uint32_t>(shells_.size());
+      for (const Corner& c : corners(facets_[f])) {
+        shell.vertices.push_back(c.vertex);
+        // Convex along every edge, a closed surface that does not intersect itself is convex as a whole (Tietze–Nakajima).
+        for (const Corner& n : corners(facets_[c.neighbour])) {
+          shell.convex = shell.convex && side_of(facets_[f].plane, vertices_[n.vertex], counts) <= 0;
+        }
+      }
+    }
+    std::sort(shell.vertices.begin(), shell.vertices.end());
+    shell.vertices.erase(std::unique(shell.vertices.begin(), shell.vertices.end()), shell.vertices.end());
+    shells_.push_back(std::move(shell));
   }
 }
 
 void PolygonSoup::find_coplanar() {
+  std::vector<Box> boxes(facets_.size());
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    for (const Corner& c : corners(facets_[f])) boxes[f].extend(vertices_[c.vertex]);
+  }
+  const SpatialIndex index(boxes);
   StageCounts counts;
   coplanar_first_.assign(1, 0);
   std::vector<std::uint32_t> near;
   for (std::uint32_t f = 0; f < facets_.size(); ++f) {
-    Box box;
-    for (const Corner& c : corners(facets_[f])) box.extend(vertices_[c.vertex]);
     near.clear();
-    index_.find(box, near);
+    index.find(boxes[f], near);
     std::sort(near.begin(), near.end());
     const Plane& plane = facets_[f].plane;
     for (const auto t : near) {
-      if (facets_[t].polygon == facets_[f].polygon) continue;
+      if (t == f || roles_[facets_[t].polygon] == Role::unoccluding) continue;
       const auto in_plane = [&](const Corner& c) { return side_of(plane, vertices_[c.vertex], counts) == 0; };
       const auto c = corners(facets_[t]);
       if (std::all_of(c.begin(), c.end(), in_plane)) coplanar_.push_back(t);
@@ -184,7 +213,21 @@ void PolygonSoup::find_coplanar() {
   }
 }
 
+void PolygonSoup::build_index() {
+  std::vector<Box> boxes(facets_.size() + shells_.size());
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const bool of_convex_shell = facets_[f].shell != kNone && shells_[facets_[f].shell].convex;
+    if (roles_[facets_[f].polygon] == Role::unoccluding || of_convex_shell) continue;
+    for (const Corner& c : corners(facets_[f])) boxes[f].extend(vertices_[c.vertex]);
+  }
+  for (std::size_t s = 0; s < shells_.size(); ++s) {
+    if (shells_[s].convex) boxes[facets_.size() + s] = shells_[s].box;
+  }
+  index_ = SpatialIndex(boxes);
+}
+
 bool PolygonSoup::covers(std::uint32_t t, std::uint32_t f) const {
+  if (facets_[t].polygon == facets_[f].polygon) return false;
   const bool same_facing = dot(facets_[t].plane.normal, facets_[f].plane.normal) > 0;
   switch (roles_[facets_[t].polygon]) {
     case Role::patch:

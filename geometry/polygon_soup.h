@@ -27,6 +27,7 @@ struct Plane {
   Vec3 origin;              ///< one of the vertices
   Vec3 normal;              ///< rounded cross product of two edges, not of unit length
   double normal_error = 0;  ///< bound of the error of each of the normal's components
+  double normal_size = 0;   ///< largest of |components|
   PlanePoints points;       ///< three vertices, counter-clockwise, that define the plane exactly
   int axis = -1;            ///< 0, 1, 2: exactly perpendicular to that axis; −1: not
   int axis_sign = 0;        ///< of the exact normal along that axis
@@ -49,6 +50,13 @@ struct Corner {
   std::uint32_t neighbour = kNone;  ///< the one facet across the edge from this corner to the next; kNone: none, or several
 };
 
+/// Facets that bound a solid, facing out.
+struct Shell {
+  Box box;
+  bool convex = false;  ///< exactly, along every edge
+  std::vector<std::uint32_t> facets, vertices;  ///< each once, ascending
+};
+
 class PolygonSoup {
  public:
   /// Takes polygons without defects other than zero area (those have no facets). roles: one for each polygon, or empty
@@ -69,19 +77,20 @@ class PolygonSoup {
   /// The facets of polygon p are first_facet(p) … first_facet(p + 1) − 1.
   std::uint32_t first_facet(std::uint32_t polygon) const { return first_facet_[polygon]; }
 
-  /// Boxes of the shells, closed manifolds that bound a solid (shell.h). A ray from outside the box meets a front face of
-  /// the shell before any back face: back faces hide nothing that front faces do not.
-  std::span<const Box> shells() const { return shells_; }
+  /// Closed manifolds that bound a solid (shell.h). A ray from outside the box meets a front face of the shell before any
+  /// back face: back faces hide nothing that front faces do not.
+  std::span<const Shell> shells() const { return shells_; }
 
-  /// Facets of other polygons that lie exactly in the plane of facet f and touch its box, ascending.
+  /// Other facets that lie exactly in the plane of facet f and touch its box, ascending.
   std::span<const std::uint32_t> coplanar(std::uint32_t f) const {
     return {coplanar_.data() + coplanar_first_[f], coplanar_.data() + coplanar_first_[f + 1]};
   }
 
-  /// Whether facet t, one of coplanar(f), covers f where they overlap.
+  /// Whether facet t, one of coplanar(f), covers f where they overlap. Facets of one polygon never do.
   bool covers(std::uint32_t t, std::uint32_t f) const;
 
-  /// Of all facets that occlude; its items are facets.
+  /// Of all that occludes: item k is facet k, or shell k − facets().size() where that is convex; the facets of convex
+  /// shells are not items themselves.
   const SpatialIndex& index() const { return index_; }
 
   /// Largest absolute coordinate.
@@ -92,11 +101,12 @@ class PolygonSoup {
   void find_neighbours();
   void find_shells();
   void find_coplanar();
+  void build_index();
 
   std::vector<Vec3> vertices_;
   std::vector<Facet> facets_;
   std::vector<Corner> corners_;
-  std::vector<Box> shells_;
+  std::vector<Shell> shells_;
   std::vector<Role> roles_;
   std::vector<std::uint32_t> first_facet_;
   std::vector<std::uint32_t> coplanar_, coplanar_first_;

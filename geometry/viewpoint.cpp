@@ -1,8 +1,8 @@
 #include "geometry/viewpoint.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/multiprecision/mpfr.hpp>
-#include <optional>
 #include <stdexcept>
 
 #include "geometry/lambert.h"
@@ -15,113 +15,46 @@ namespace {
 using Extended = boost::multiprecision::number<
     boost::multiprecision::mpfr_float_backend<80, boost::multiprecision::allocate_stack>, boost::multiprecision::et_off>;
 
-/// Whether a point, by identity in the facet's plane, lies in the facet's interior: exact in the projection along the largest
-/// component of the normal.
-bool holds(const PolygonSoup& soup, const Facet& f, const Vec3& x, StageCounts& counts) {
-  const Vec3 n = f.plane.normal;
-  const int axis = std::fabs(n.x) >= std::fabs(n.y) && std::fabs(n.x) >= std::fabs(n.z) ? 0
-                   : std::fabs(n.y) >= std::fabs(n.z)                                   ? 1
-                                                                                        : 2;
-  const auto loop = soup.corners(f);
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Vec3& a = soup.vertices()[loop[k].vertex];
-    const Vec3& b = soup.vertices()[loop[(k + 1) % loop.size()].vertex];
-    Vec3 p = a, q = b, v = x, above = a;  // three points in the projection plane and one on the normal's side of it
-    p[axis] = q[axis] = v[axis] = 0;
-    above[axis] = n[axis] > 0 ? 1 : -1;
-    if (orientation(p, q, v, above, counts) <= 0) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 struct Viewpoint::State {
-  struct FacetView {
-    std::uint32_t epoch = 0;
-    std::int8_t facing = 0;  // side of the facet that is seen; 0: edge-on, or it can hide nothing from here
-  };
-  struct VertexView {
-    std::uint32_t epoch = 0;
-    std::int8_t horizon = 0;
-  };
   /// What stands between the point and a facet, kept while pieces of the same facet are asked about.
   struct Candidates {
     std::uint32_t facet = kNone;
     bool blocked = false;
-    std::vector<std::uint32_t> occluders;
+    std::vector<Occluder> occluders;
   };
 
-  explicit State(const PolygonSoup& s)
-      : soup(s), facet_view(s.facets().size()), vertex_view(s.vertices().size()), region(s, counts), fine(s, counts) {}
+  explicit State(const PolygonSoup& s) : soup(s), view(s), region(view), fine(view) {}
 
-  bool excluded(std::uint32_t facet) const;
-  int facing(std::uint32_t facet);
-  int horizon(std::uint32_t vertex);
   template <class Real>
   VisibleRegion<Real>& region_of();
   template <class Real>
-  bool set_source(std::uint32_t facet, int source_facing);
-  template <class Real>
-  typename VisibleRegion<Real>::Effect add_occluder(std::uint32_t source_facet, std::uint32_t facet);
+  bool set_source(std::uint32_t facet, int source_facing) {
+    return region_of<Real>().set_source(facet, source_facing, corners, horizons);
+  }
+  bool add_candidate(const Occluder& occluder);
   bool find_candidates(std::uint32_t facet);
   bool prepare(const Source& source, int& source_facing);
   bool put_occluders(const Source& source, int source_facing);
+  Candidates& candidates_of(std::uint32_t facet) { return recent[facet % recent.size()]; }
   template <class Real>
   bool add_candidates(std::uint32_t facet);
   template <class Real>
   PointFormFactor sum(PointFormFactor result);
 
   const PolygonSoup& soup;
-  Receiver receiver;
-  StageCounts counts;
+  View view;
   std::uint64_t extended = 0;
-  std::uint32_t epoch = 0;
-  std::vector<FacetView> facet_view;
-  std::vector<VertexView> vertex_view;
+  bool covered = false;
   VisibleRegion<double> region;
   VisibleRegion<Extended> fine;
-  Candidates candidates;
+  std::array<Candidates, 4> recent;  // the facets of a polygon take turns
   std::vector<const Vec3*> corners;
   std::vector<int> horizons;
   std::vector<HalfSpace> half_spaces;
   std::vector<std::uint32_t> found;
-  bool is_covered = false;
 };
-
-bool Viewpoint::State::excluded(std::uint32_t facet) const {
-  if (receiver.facet == kNone) return false;
-  if (soup.facets()[facet].polygon == soup.facets()[receiver.facet].polygon) return true;
-  const auto coplanar = soup.coplanar(receiver.facet);
-  return std::binary_search(coplanar.begin(), coplanar.end(), facet);
-}
-
-/// The side from which an occluding facet is seen. Back faces of a shell hide nothing from a point outside its box
-/// that its front faces do not hide: they count as edge-on. (The box is grown, because a point that lies in a contact by
-/// identity may be rounded out of it.)
-int Viewpoint::State::facing(std::uint32_t facet) {
-  FacetView& view = facet_view[facet];
-  if (view.epoch != epoch) {
-    view.epoch = epoch;
-    const Facet& f = soup.facets()[facet];
-    view.facing = 0;
-    if (!excluded(facet)) {
-      view.facing = static_cast<std::int8_t>(side_of(f.plane, receiver.point, counts));
-      if (view.facing < 0 && f.shell != kNone && !soup.shells()[f.shell].contains(receiver.point, 0x1p-40 * soup.extent())) view.facing = 0;
-    }
-  }
-  return view.facing;
-}
-
-int Viewpoint::State::horizon(std::uint32_t vertex) {
-  VertexView& view = vertex_view[vertex];
-  if (view.epoch != epoch) {
-    view.epoch = epoch;
-    view.horizon =
-        static_cast<std::int8_t>(horizon_side(receiver.point, receiver.normal, soup.vertices()[vertex], counts));
-  }
-  return view.horizon;
-}
 
 template <>
 VisibleRegion<double>& Viewpoint::State::region_of() {
@@ -132,65 +65,49 @@ VisibleRegion<Extended>& Viewpoint::State::region_of() {
   return fine;
 }
 
-template <class Real>
-bool Viewpoint::State::set_source(std::uint32_t facet, int source_facing) {
-  return region_of<Real>().set_source(receiver.point, receiver.normal, soup.facets()[facet].plane, source_facing, corners,
-                                      horizons);
-}
-
-template <class Real>
-typename VisibleRegion<Real>::Effect Viewpoint::State::add_occluder(std::uint32_t source_facet, std::uint32_t facet) {
-  const auto facets = soup.facets();
-  const std::uint32_t source_polygon = facets[source_facet].polygon;
-  const Facet& f = facets[facet];
-  const int side = facing(facet);
-  if (side == 0 || f.polygon == source_polygon) return VisibleRegion<Real>::Effect::none;
-  const auto coplanar = soup.coplanar(source_facet);
-  const bool covers =
-      std::binary_search(coplanar.begin(), coplanar.end(), facet) && soup.covers(facet, source_facet);
-  const auto loop = soup.corners(f);
-  // An edge whose neighbour faces the same way bounds nothing. Where an occluder lies in the source's plane, its neighbour
-  // may dive behind that plane: there only pieces of the same polygon carry on.
-  const auto bounds = [&](std::uint32_t k) {
-    const std::uint32_t n = loop[k].neighbour;
-    if (n == kNone || facets[n].polygon == source_polygon) return true;
-    if (covers && facets[n].polygon != f.polygon) return true;
-    return facing(n) != side;
-  };
-  return region_of<Real>().add_occluder(facet, side, covers, bounds, [&](std::uint32_t v) { return horizon(v); });
+/// Adds an occluder to the current source; false when it hides all of it.
+bool Viewpoint::State::add_candidate(const Occluder& occluder) {
+  const auto effect = region.add(occluder);
+  Candidates& candidates = candidates_of(region.source_facet());
+  if (effect != VisibleRegion<double>::Effect::none) candidates.occluders.push_back(occluder);
+  candidates.blocked = effect == VisibleRegion<double>::Effect::whole;
+  return !candidates.blocked;
 }
 
 /// Looks for everything that hides something of the current source from the point; false when all of it is hidden.
 bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   // Half-spaces that hold all that can lie between: the source's cone and the near side of its plane. |v − x| and |v| are at
   // most `reach` within the scene; each offset is lowered by the errors of the normal and of both products.
-  const double reach = 4 * std::fmax(soup.extent(), std::fmax(std::fabs(receiver.point.x),
-                                                              std::fmax(std::fabs(receiver.point.y),
-                                                                        std::fabs(receiver.point.z))));
+  const double reach = 4 * std::fmax(soup.extent(), std::fmax(std::fabs(view.receiver().point.x),
+                                                              std::fmax(std::fabs(view.receiver().point.y),
+                                                                        std::fabs(view.receiver().point.z))));
   half_spaces.clear();
   for (const auto& side : region.source().sides) {
     const Vec3 m{side.m.x, side.m.y, side.m.z};
-    half_spaces.push_back({m, dot(m, receiver.point) - (side.error + 16 * kRoundoff * side.length) * reach});
+    half_spaces.push_back({m, dot(m, view.receiver().point) - (side.error + 16 * kRoundoff * side.length) * reach});
   }
   const Plane& plane = soup.facets()[facet].plane;
-  const Vec3 normal = side_of(plane, receiver.point, counts) * plane.normal;
-  half_spaces.push_back({receiver.normal, dot(receiver.normal, receiver.point) -
-                                              16 * kRoundoff * norm(receiver.normal) * reach});
+  const Vec3 normal = side_of(plane, view.receiver().point, view.counts()) * plane.normal;
+  half_spaces.push_back({view.receiver().normal, dot(view.receiver().normal, view.receiver().point) -
+                                              16 * kRoundoff * norm(view.receiver().normal) * reach});
   half_spaces.push_back(
       {normal, dot(normal, plane.origin) - (2 * plane.normal_error + 16 * kRoundoff * norm(plane.normal)) * reach});
   found.clear();
   soup.index().find(half_spaces, found);
 
-  candidates.facet = facet;
-  candidates.blocked = false;
-  candidates.occluders.clear();
-  for (const std::uint32_t t : found) {
-    const auto effect = add_occluder<double>(facet, t);
-    if (effect == VisibleRegion<double>::Effect::none) continue;
-    candidates.occluders.push_back(t);
-    if (effect == VisibleRegion<double>::Effect::whole) {
-      candidates.blocked = true;
-      return false;
+  const auto facets = static_cast<std::uint32_t>(soup.facets().size());
+  for (const std::uint32_t item : found) {
+    if (item < facets) {
+      if (!add_candidate({item, kNone})) return false;
+      continue;
+    }
+    const Shell& shell = soup.shells()[item - facets];
+    if (view.outside(shell) && region.in_front_of_source(shell)) {
+      if (!add_candidate({kNone, item - facets})) return false;
+      continue;
+    }
+    for (const std::uint32_t f : shell.facets) {
+      if (!add_candidate({f, kNone})) return false;
     }
   }
   return true;
@@ -199,19 +116,19 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
 /// Sets corners and their horizon signs; false when nothing of the source can be seen.
 bool Viewpoint::State::prepare(const Source& source, int& source_facing) {
   const Facet& f = soup.facets()[source.facet];
-  source_facing = excluded(source.facet) ? 0 : side_of(f.plane, receiver.point, counts);
+  source_facing = view.excluded(source.facet) ? 0 : side_of(f.plane, view.receiver().point, view.counts());
   if (source_facing == 0) return false;
   corners.clear();
   horizons.clear();
   if (source.loop.empty()) {
     for (const Corner& c : soup.corners(f)) {
       corners.push_back(&soup.vertices()[c.vertex]);
-      horizons.push_back(horizon(c.vertex));
+      horizons.push_back(view.horizon(c.vertex));
     }
   } else {
     for (const Vec3& v : source.loop) {
       corners.push_back(&v);
-      horizons.push_back(horizon_side(receiver.point, receiver.normal, v, counts));
+      horizons.push_back(horizon_side(view.receiver().point, view.receiver().normal, v, view.counts()));
     }
   }
   return std::any_of(horizons.begin(), horizons.end(), [](int s) { return s > 0; });
@@ -220,8 +137,8 @@ bool Viewpoint::State::prepare(const Source& source, int& source_facing) {
 /// Adds the candidates to the current source; false when they hide all of it.
 template <class Real>
 bool Viewpoint::State::add_candidates(std::uint32_t facet) {
-  for (const std::uint32_t t : candidates.occluders) {
-    if (add_occluder<Real>(facet, t) == VisibleRegion<Real>::Effect::whole) return false;
+  for (const Occluder& occluder : candidates_of(facet).occluders) {
+    if (region_of<Real>().add(occluder) == VisibleRegion<Real>::Effect::whole) return false;
   }
   return true;
 }
@@ -230,7 +147,7 @@ bool Viewpoint::State::add_candidates(std::uint32_t facet) {
 template <class Real>
 PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
   auto& r = region_of<Real>();
-  LambertSum<Real> lambert(receiver.normal);
+  LambertSum<Real> lambert(view.receiver().normal);
   r.for_each_arc([&](const Arc<Real>& arc) { lambert.add(arc); });
   result.visibility = r.occluder_count() == 0 ? Visibility::open
                       : lambert.arcs() == 0   ? Visibility::blocked
@@ -251,23 +168,22 @@ PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
 /// Sets the current source, prepared, and adds its occluders; false when they hide all of it. The candidates of a facet are
 /// looked for once for all its pieces.
 bool Viewpoint::State::put_occluders(const Source& source, int source_facing) {
-  if (candidates.facet == source.facet) {
-    set_source<double>(source.facet, source_facing);
-    return !candidates.blocked && add_candidates<double>(source.facet);
+  Candidates& candidates = candidates_of(source.facet);
+  if (candidates.facet != source.facet) {
+    candidates.facet = source.facet;
+    candidates.blocked = false;
+    candidates.occluders.clear();
+    if (source.loop.empty()) {
+      set_source<double>(source.facet, source_facing);
+      return find_candidates(source.facet);
+    }
+    int facet_facing = 0;
+    if (prepare({source.facet, {}}, facet_facing)) {
+      set_source<double>(source.facet, facet_facing);
+      find_candidates(source.facet);
+    }
+    prepare(source, source_facing);
   }
-  if (source.loop.empty()) {
-    set_source<double>(source.facet, source_facing);
-    return find_candidates(source.facet);
-  }
-  candidates.facet = source.facet;
-  candidates.blocked = false;
-  candidates.occluders.clear();
-  int facet_facing = 0;
-  if (prepare({source.facet, {}}, facet_facing)) {
-    set_source<double>(source.facet, facet_facing);
-    find_candidates(source.facet);
-  }
-  prepare(source, source_facing);
   set_source<double>(source.facet, source_facing);
   return !candidates.blocked && add_candidates<double>(source.facet);
 }
@@ -282,24 +198,19 @@ void Viewpoint::look_from(const Receiver& receiver) {
   if (!is_finite(receiver.normal) || receiver.normal == Vec3{}) {
     throw std::invalid_argument("receiver normal: zero or not finite");
   }
-  State& s = *state_;
-  s.receiver = receiver;
-  s.candidates.facet = kNone;
-  if (++s.epoch == 0) {
-    for (auto& v : s.facet_view) v.epoch = 0;
-    for (auto& v : s.vertex_view) v.epoch = 0;
-    s.epoch = 1;
+  state_->view.look_from(receiver);
+  for (auto& candidates : state_->recent) candidates.facet = kNone;
+  state_->covered = state_->view.covered();
+  if (state_->covered || !state_->view.in_contact()) return;
+  double back = 0;
+  for (std::uint32_t f = 0; f < state_->soup.facets().size(); ++f) {
+    const PointFormFactor seen = form_factor({f, {}}, 1e-9);
+    if (seen.side == Side::back) back += seen.F;
   }
-  s.is_covered = false;
-  if (receiver.facet == kNone) return;
-  for (const std::uint32_t t : s.soup.coplanar(receiver.facet)) {
-    if (s.soup.covers(t, receiver.facet) && holds(s.soup, s.soup.facets()[t], receiver.point, s.counts)) {
-      s.is_covered = true;
-    }
-  }
+  state_->covered = back > 1 - 1e-6;
 }
 
-bool Viewpoint::covered() const { return state_->is_covered; }
+bool Viewpoint::covered() const { return state_->covered; }
 
 PointFormFactor Viewpoint::form_factor(const Source& source, double tolerance) {
   State& s = *state_;
@@ -308,7 +219,7 @@ PointFormFactor Viewpoint::form_factor(const Source& source, double tolerance) {
   const bool above = s.prepare(source, source_facing);
   result.side = source_facing > 0 ? Side::front : source_facing < 0 ? Side::back : Side::edge_on;
   if (!above) return result;
-  if (s.is_covered) {
+  if (s.covered) {
     result.visibility = Visibility::blocked;
     return result;
   }
@@ -329,13 +240,13 @@ std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {
   State& s = *state_;
   std::vector<BoundaryPiece> pieces;
   int source_facing = 0;
-  if (s.is_covered || !s.prepare(source, source_facing) || !s.put_occluders(source, source_facing)) return pieces;
+  if (s.covered || !s.prepare(source, source_facing) || !s.put_occluders(source, source_facing)) return pieces;
   // Near the point of view a direction must be known far better than the point where it meets the source's plane.
   s.set_source<Extended>(source.facet, source_facing);
   s.add_candidates<Extended>(source.facet);
   const PlanePoints& plane = s.soup.facets()[source.facet].plane.points;
   const auto normal = cross(difference<Extended>(*plane.b, *plane.a), difference<Extended>(*plane.c, *plane.a));
-  const Extended height = dot(normal, difference<Extended>(*plane.a, s.receiver.point));
+  const Extended height = dot(normal, difference<Extended>(*plane.a, s.view.receiver().point));
   s.fine.for_each_arc([&](const Arc<Extended>& arc) {
     if (!(arc.t0 < arc.t1)) return;
     const auto& p = arc.cone->corners[arc.side->from].w;
@@ -343,8 +254,8 @@ std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {
     const auto point = [&](const Extended& t) {
       const auto w = p + t * e;
       const Extended scale = arc.of_source ? Extended(1) : Extended(height / dot(normal, w));
-      return Vec3{static_cast<double>(s.receiver.point.x + scale * w.x), static_cast<double>(s.receiver.point.y + scale * w.y),
-                  static_cast<double>(s.receiver.point.z + scale * w.z)};
+      return Vec3{static_cast<double>(s.view.receiver().point.x + scale * w.x), static_cast<double>(s.view.receiver().point.y + scale * w.y),
+                  static_cast<double>(s.view.receiver().point.z + scale * w.z)};
     };
     // The region lies to the left of the direction whose normal with x points to it: out of an occluder's cone.
     const bool towards_cone = dot(cross(p, e), arc.side->m) < 0;
@@ -355,7 +266,7 @@ std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {
   return pieces;
 }
 
-const StageCounts& Viewpoint::stage_counts() const { return state_->counts; }
+const StageCounts& Viewpoint::stage_counts() const { return state_->view.counts(); }
 std::uint64_t Viewpoint::extended_count() const { return state_->extended; }
 
 double area(std::span<const BoundaryPiece> region) {

@@ -6,17 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "geometry/polygon_soup.h"
+#include "geometry/view.h"
 
 namespace exitance {
-
-/// A point that receives, with the normal of its surface (any length but zero). A point of a facet lies on it by identity,
-/// not by sign: it names the facet, and then neither that facet's polygon nor what lies in its plane hides anything from it.
-struct Receiver {
-  Vec3 point;
-  Vec3 normal;
-  std::uint32_t facet = kNone;
-};
 
 /// A convex source: a whole facet (empty loop) or a piece of it, whose loop runs counter-clockwise seen from the facet's
 /// front and whose points, though rounded, lie in the facet's plane by identity.
@@ -28,7 +20,7 @@ struct Source {
 enum class Side : std::uint8_t { front, back, edge_on };
 
 enum class Visibility : std::uint8_t {
-  away,     ///< below the receiver's horizon, edge-on, or the receiver's own polygon: nothing can be seen
+  away,     ///< below the receiver's horizon, edge-on, or in the receiver's own plane: nothing can be seen
   open,     ///< no occluder reaches between: closed form
   partial,  ///< occluders hide some of it
   blocked   ///< nothing is left
@@ -59,7 +51,9 @@ class Viewpoint {
   /// Sets the point. Throws std::invalid_argument on a zero or non-finite normal and on a non-finite point.
   void look_from(const Receiver& receiver);
 
-  /// Whether something that lies in the receiver's own plane covers it (only a receiver on a facet can be): it sees nothing.
+  /// Whether the receiver, on a facet, sees nothing because of a contact in its own plane: something covers it, or it is
+  /// buried in a solid that touches its surface. It is buried when it lies within a facet that faces against its own (as
+  /// on both sides of a sheet, too) and back sides fill all that it sees. All its form factors are 0.
   bool covered() const;
 
   /// F from the point to the visible part of the source, from whichever side it is seen. Where double precision cannot

@@ -11,15 +11,17 @@
 //  - An occluder counts only with its part strictly in front of the source's plane. Where it pierces that plane, and the
 //    source lies on both sides of its own plane, it is cut along the line of both planes, which becomes an edge like others.
 //    Otherwise the cone of its rest is separated from the source's cone, or adds nothing within it.
-//  - One that lies in the source's plane counts whole if the caller says that it covers the source, else not at all.
-//  - Edge-on occluders must not be added.
+//  - One that lies in the source's plane counts whole if it covers the source (polygon_soup.h), else not at all.
+//  - Edge-on occluders hide nothing.
 
 #include <algorithm>
+#include <deque>
 #include <span>
+#include <unordered_map>
 
 #include "geometry/chart.h"
 #include "geometry/cone.h"
-#include "geometry/polygon_soup.h"
+#include "geometry/view.h"
 
 namespace exitance {
 
@@ -33,42 +35,65 @@ struct Arc {
   bool of_source = true;
 };
 
+/// What hides: a facet, or a convex shell as a whole, whose front faces are seen as one convex cone.
+struct Occluder {
+  std::uint32_t facet = kNone, shell = kNone;
+};
+
 template <class Real>
 class VisibleRegion {
  public:
-  /// Corner of a polygon as an input point, with its vector from x and whether it lies in the source's plane by identity.
+  /// Corners of a polygon, input points.
   using Corners = std::span<const Vec3* const>;
 
-  VisibleRegion(const PolygonSoup& soup, StageCounts& counts) : soup_(soup), counts_(counts) {}
+  explicit VisibleRegion(View& view) : view_(view), soup_(view.soup()) {}
 
-  /// Starts on a source in a plane, seen from x, which lies strictly on side `facing` (±1) of the plane. Its corners run
-  /// counter-clockwise seen from the plane's front; `horizon`: the sign of each against the receiver's horizon. False when
-  /// no part of it is above the horizon.
-  bool set_source(const Vec3& x, const Vec3& normal, const Plane& plane, int facing, Corners corners,
-                  std::span<const int> horizon);
+  /// Starts on a source in a facet's plane, seen from the view's point, which lies strictly on side `facing` (±1) of that
+  /// plane. Its corners run counter-clockwise seen from the facet's front; `horizon`: the sign of each against the
+  /// receiver's horizon. False when no part of it is above the horizon.
+  bool set_source(std::uint32_t facet, int facing, Corners corners, std::span<const int> horizon);
 
   enum class Effect { none, part, whole };
 
-  /// Adds an occluding facet, seen from side `facing`; `covers`: it lies in the source's plane and covers it.
-  /// bounds(k): whether the edge from corner k is an edge of the occluder, not shared with one that carries on.
-  /// horizon(vertex): a vertex' sign against the receiver's horizon.
-  template <class Bounds, class Horizon>
-  Effect add_occluder(std::uint32_t facet, int facing, bool covers, const Bounds& bounds, const Horizon& horizon);
+  /// Adds an occluder. A shell must be convex, with the point outside its box and all of it on the point's side of the
+  /// source's plane (see in_front_of_source).
+  Effect add(const Occluder& occluder);
+
+  /// Whether no vertex of the shell lies behind the source's plane, and one in front.
+  bool in_front_of_source(const Shell& shell);
 
   /// Calls sink(arc) for every stretch of the boundary, and for those that are empty but might not be without rounding.
   template <class Sink>
   void for_each_arc(const Sink& sink);
 
-  std::size_t occluder_count() const { return occluder_count_; }
+  std::size_t occluder_count() const { return count_; }
+  std::uint32_t source_facet() const { return source_facet_; }
   const Cone<Real>& source() const { return source_; }
 
  private:
+  /// An occluder's cone and, of each side's edge, the stretch within the source's cone.
+  struct Added {
+    const Cone<Real>* cone = nullptr;
+    Cone<Real> clipped;
+    std::vector<Stretch<Real>> edges;  // empty: bounds nothing
+    bool bounds = false;               // whether any edge does
+  };
+
+  Effect add_facet(std::uint32_t facet);
+  Effect add_cone(Added& added);
+
   /// Of corners that run counter-clockwise seen from the front: seen from there, det(c − x, d − x, v − x) is negative
   /// inside, so that sign is −1 where x is in front.
   void set_cone(Cone<Real>& cone, Corners corners, int sign, bool on_source);
+  const Cone<Real>& cone_of_facet(std::uint32_t facet);
+  const Cone<Real>& cone_of_shell(std::uint32_t shell);
+  void set_facet_cone(Cone<Real>& cone, std::uint32_t facet);
+  void drop_below_horizon(Cone<Real>& cone);
+  Cone<Real>* cached(std::uint32_t item, bool& is_new);
+
   Signed<Real> plane_value(const Plane& plane, const Vec3& v, int sign) const;
   ConeSide<Real> closing_cut(const Plane& T, int facing_occluder) const;
-  void cover(const Cone<Real>& a, const Cone<Real>& b, bool b_first);
+  void cover(const Added& a, const Added& b, bool b_first);
   /// row_: values of a side's functional at the corners of another cone.
   void fill_row(const ConeSide<Real>& side, const Cone<Real>& cone);
   bool lies_in(const ConeSide<Real>& edge) const { return row_[edge.from].sign == 0 && row_[edge.to].sign == 0; }
@@ -76,22 +101,32 @@ class VisibleRegion {
                     const ConeSide<Real>& side);
 
   template <class Sink>
-  void finish_edge(const Cone<Real>& cone, const ConeSide<Real>& side, std::vector<Stretch<Real>>& covered,
-                   bool of_source, const Sink& sink);
+  void finish_edge(const Cone<Real>& cone, const ConeSide<Real>& side, const Stretch<Real>& edge,
+                   std::vector<Stretch<Real>>& covered, bool of_source, const Sink& sink);
 
+  View& view_;
   const PolygonSoup& soup_;
-  StageCounts& counts_;
   ViewFrame frame_;
+  std::uint32_t source_facet_ = kNone;
   const Plane* source_plane_ = nullptr;
   int facing_source_ = 1;
   Cone<Real> source_;
-  std::vector<Cone<Real>> occluders_;  // occluder_count_ of them in use
-  std::size_t occluder_count_ = 0;
+  std::deque<Added> added_;  // count_ of them in use; they may point into themselves
+  std::size_t count_ = 0;
   std::vector<std::vector<Stretch<Real>>> covered_source_;  // by source side
   std::vector<std::vector<Stretch<Real>>> covered_;         // by side of the occluder being finished
   std::vector<Signed<Real>> row_, weight_;
-  std::vector<Stretch<Real>> within_, source_cut_;
+  std::vector<Stretch<Real>> within_;
+  std::vector<const Vec3*> corners_;
   Chart chart_;
+
+  // Cones of the current view, kept because every occluder is met on the way to many sources.
+  struct Slot {
+    std::uint32_t epoch = 0, cone = 0;
+  };
+  std::vector<Slot> slots_;  // by facet, then by shell
+  std::deque<Cone<Real>> cones_;
+  std::uint32_t cones_epoch_ = 0, cones_used_ = 0;
 };
 
 template <class Real>
@@ -115,17 +150,17 @@ void VisibleRegion<Real>::set_cone(Cone<Real>& cone, Corners corners, int sign, 
 }
 
 template <class Real>
-bool VisibleRegion<Real>::set_source(const Vec3& x, const Vec3& normal, const Plane& plane, int facing, Corners corners,
-                                     std::span<const int> horizon) {
-  frame_ = {x, normal, plane.points};
-  source_plane_ = &plane;
+bool VisibleRegion<Real>::set_source(std::uint32_t facet, int facing, Corners corners, std::span<const int> horizon) {
+  source_facet_ = facet;
+  source_plane_ = &soup_.facets()[facet].plane;
+  frame_ = {view_.receiver().point, view_.receiver().normal, source_plane_->points};
   facing_source_ = facing;
-  occluder_count_ = 0;
+  count_ = 0;
   if (std::none_of(horizon.begin(), horizon.end(), [](int s) { return s > 0; })) return false;
   set_cone(source_, corners, -facing, true);
   if (std::any_of(horizon.begin(), horizon.end(), [](int s) { return s < 0; })) {
     ConeSide<Real> closing;
-    closing.m = {Real(normal.x), Real(normal.y), Real(normal.z)};
+    closing.m = {Real(frame_.normal.x), Real(frame_.normal.y), Real(frame_.normal.z)};
     closing.length = norm(closing.m);
     closing.error = 5 * roundoff<Real>() * closing.length;
     closing.exact = {ViewPlane::Kind::horizon, 1, nullptr, nullptr, {}};
@@ -186,35 +221,141 @@ ConeSide<Real> VisibleRegion<Real>::closing_cut(const Plane& T, int facing_occlu
 template <class Real>
 void VisibleRegion<Real>::fill_row(const ConeSide<Real>& side, const Cone<Real>& cone) {
   row_.clear();
-  for (const auto& c : cone.corners) row_.push_back(value_at(side, c, frame_, counts_));
+  for (const auto& c : cone.corners) row_.push_back(value_at(side, c, frame_, view_.counts()));
 }
 
 /// Narrows a stretch of an edge of the cone whose row is filled to where it is inside of the side.
 template <class Real>
 void VisibleRegion<Real>::narrow_along(Stretch<Real>& stretch, const Cone<Real>& cone, const ConeSide<Real>& edge,
                                        const ConeSide<Real>& side) {
-  narrow(stretch, row_[edge.from], row_[edge.to], [&] {
+  narrow(stretch, row_[edge.from], row_[edge.to], edge.sweep, [&] {
     if constexpr (!std::is_same_v<Real, double>) return;
     for (const std::uint32_t k : {edge.from, edge.to}) {
-      row_[k] = refined_value_at(side, cone.corners[k], frame_, counts_);
+      row_[k] = refined_value_at(side, cone.corners[k], frame_, view_.counts());
     }
   });
 }
 
+/// A place for the cone of a facet, or a shell after all facets, in the current view.
 template <class Real>
-template <class Bounds, class Horizon>
-typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_occluder(std::uint32_t facet, int facing, bool covers,
-                                                                       const Bounds& bounds, const Horizon& horizon) {
-  const Facet& f = soup_.facets()[facet];
-  const auto vertices = soup_.vertices();
-  const auto loop = soup_.corners(f);
-  const auto is_corner = [](const auto& corners, const Vec3& v) {
-    return std::any_of(corners.begin(), corners.end(), [&](const auto& c) { return *c.exact.a == v; });
-  };
+Cone<Real>* VisibleRegion<Real>::cached(std::uint32_t item, bool& is_new) {
+  if (slots_.empty()) slots_.resize(soup_.facets().size() + soup_.shells().size());
+  if (cones_epoch_ != view_.epoch()) {
+    cones_epoch_ = view_.epoch();
+    cones_used_ = 0;
+  }
+  Slot& slot = slots_[item];
+  is_new = slot.epoch != cones_epoch_;
+  if (is_new) {
+    slot = {cones_epoch_, cones_used_++};
+    if (cones_.size() < cones_used_) cones_.emplace_back();
+  }
+  return &cones_[slot.cone];
+}
 
-  if (std::none_of(loop.begin(), loop.end(), [&](const Corner& c) { return horizon(c.vertex) > 0; })) {
+/// An edge on or below the horizon bounds nothing, and above the horizon the cone is the same without it: the cut of a
+/// convex cone by the horizon has its closing side in the horizon itself.
+template <class Real>
+void VisibleRegion<Real>::drop_below_horizon(Cone<Real>& cone) {
+  std::erase_if(cone.sides, [&](const ConeSide<Real>& side) { return side.below_horizon; });
+}
+
+template <class Real>
+void VisibleRegion<Real>::set_facet_cone(Cone<Real>& cone, std::uint32_t facet) {
+  const Facet& f = soup_.facets()[facet];
+  const auto loop = soup_.corners(f);
+  corners_.clear();
+  for (const Corner& c : loop) corners_.push_back(&soup_.vertices()[c.vertex]);
+  set_cone(cone, corners_, -view_.facing(facet), false);
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    cone.sides[k].across = loop[k].neighbour;
+    cone.sides[k].below_horizon =
+        view_.horizon(loop[k].vertex) <= 0 && view_.horizon(loop[(k + 1) % loop.size()].vertex) <= 0;
+  }
+}
+
+template <class Real>
+const Cone<Real>& VisibleRegion<Real>::cone_of_facet(std::uint32_t facet) {
+  bool is_new = false;
+  Cone<Real>& cone = *cached(facet, is_new);
+  if (is_new) {
+    set_facet_cone(cone, facet);
+    drop_below_horizon(cone);
+  }
+  return cone;
+}
+
+/// The silhouette of a convex shell: the edges between faces that are seen from the front and others.
+template <class Real>
+const Cone<Real>& VisibleRegion<Real>::cone_of_shell(std::uint32_t shell) {
+  bool is_new = false;
+  Cone<Real>& cone = *cached(static_cast<std::uint32_t>(soup_.facets().size()) + shell, is_new);
+  if (!is_new) return cone;
+  std::unordered_map<std::uint32_t, std::uint32_t> next;
+  std::uint32_t start = kNone;
+  for (const std::uint32_t f : soup_.shells()[shell].facets) {
+    if (view_.facing(f) <= 0) continue;
+    const auto loop = soup_.corners(soup_.facets()[f]);
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      if (view_.facing(loop[k].neighbour) > 0) continue;
+      next[loop[k].vertex] = loop[(k + 1) % loop.size()].vertex;
+      start = std::min(start, loop[k].vertex);
+    }
+  }
+  corners_.clear();
+  std::vector<std::uint32_t> ring;
+  for (std::uint32_t v = start; ring.size() < next.size(); v = next[v]) {
+    ring.push_back(v);
+    corners_.push_back(&soup_.vertices()[v]);
+  }
+  set_cone(cone, corners_, -1, false);
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    cone.sides[k].below_horizon = view_.horizon(ring[k]) <= 0 && view_.horizon(ring[(k + 1) % ring.size()]) <= 0;
+  }
+  drop_below_horizon(cone);
+  return cone;
+}
+
+template <class Real>
+bool VisibleRegion<Real>::in_front_of_source(const Shell& shell) {
+  bool in_front = false;
+  for (const std::uint32_t v : shell.vertices) {
+    const int s = facing_source_ * side_of(*source_plane_, soup_.vertices()[v], view_.counts());
+    if (s < 0) return false;
+    in_front = in_front || s > 0;
+  }
+  return in_front;
+}
+
+template <class Real>
+typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add(const Occluder& occluder) {
+  if (occluder.shell == kNone) return add_facet(occluder.facet);
+  const auto& vertices = soup_.shells()[occluder.shell].vertices;
+  if (std::none_of(vertices.begin(), vertices.end(), [&](std::uint32_t v) { return view_.horizon(v) > 0; })) {
     return Effect::none;
   }
+  if (added_.size() == count_) added_.emplace_back();
+  Added& added = added_[count_];
+  added.cone = &cone_of_shell(occluder.shell);
+  added.edges.clear();
+  for (const auto& side : added.cone->sides) added.edges.push_back(side.stretch);
+  return add_cone(added);
+}
+
+template <class Real>
+typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_t facet) {
+  const auto facets = soup_.facets();
+  const Facet& f = facets[facet];
+  const int facing = view_.facing(facet);
+  if (facing == 0 || facet == source_facet_) return Effect::none;
+  const auto vertices = soup_.vertices();
+  const auto loop = soup_.corners(f);
+  if (std::none_of(loop.begin(), loop.end(), [&](const Corner& c) { return view_.horizon(c.vertex) > 0; })) {
+    return Effect::none;
+  }
+  const auto coplanar = soup_.coplanar(source_facet_);
+  const bool covers =
+      soup_.covers(facet, source_facet_) && std::binary_search(coplanar.begin(), coplanar.end(), facet);
 
   // Which side of the source's plane the occluder's corners lie on (+1: that of x), and of its own plane the source's.
   bool pierces = false;
@@ -222,8 +363,10 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_occluder(std::uint
     bool in_front = false, behind = false;
     for (const Corner& c : loop) {
       const Vec3& v = vertices[c.vertex];
-      if (is_corner(source_.corners, v)) continue;
-      const int s = facing_source_ * side_of(*source_plane_, v, counts_);
+      if (std::any_of(source_.corners.begin(), source_.corners.end(), [&](const auto& k) { return *k.exact.a == v; })) {
+        continue;
+      }
+      const int s = facing_source_ * side_of(*source_plane_, v, view_.counts());
       in_front = in_front || s > 0;
       behind = behind || s < 0;
     }
@@ -233,7 +376,7 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_occluder(std::uint
       if (c.exact.kind != ViewPoint::Kind::vertex) continue;
       const Vec3& v = *c.exact.a;
       if (std::any_of(loop.begin(), loop.end(), [&](const Corner& k) { return vertices[k.vertex] == v; })) continue;
-      const int s = facing * side_of(f.plane, v, counts_);
+      const int s = facing * side_of(f.plane, v, view_.counts());
       beyond = beyond || s < 0;
       nearer = nearer || s > 0;
     }
@@ -241,54 +384,54 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_occluder(std::uint
     pierces = behind && nearer;
   }
 
-  if (occluders_.size() == occluder_count_) occluders_.emplace_back();
-  Cone<Real>& cone = occluders_[occluder_count_];
-  {
-    std::array<const Vec3*, 64> few;
-    std::vector<const Vec3*> many;
-    if (loop.size() > few.size()) many.resize(loop.size());
-    const std::span<const Vec3*> corners =
-        many.empty() ? std::span<const Vec3*>(few.data(), loop.size()) : std::span<const Vec3*>(many);
-    for (std::size_t k = 0; k < loop.size(); ++k) corners[k] = &vertices[loop[k].vertex];
-    set_cone(cone, corners, -facing, false);
-  }
-  for (std::uint32_t k = 0; k < loop.size(); ++k) cone.sides[k].bounds = bounds(k);
-  const ChartBox box = chart_.box_of(cone);
+  if (added_.size() == count_) added_.emplace_back();
+  Added& added = added_[count_];
+  added.cone = &cone_of_facet(facet);
   if (pierces) {
+    set_facet_cone(added.clipped, facet);
     weight_.clear();
-    for (const auto& c : cone.corners) weight_.push_back(plane_value(*source_plane_, *c.exact.a, facing_source_));
+    for (const auto& c : added.clipped.corners) {
+      weight_.push_back(plane_value(*source_plane_, *c.exact.a, facing_source_));
+    }
     // The corners' weights are S times facing_source_; ViewPoint's weight is S itself.
-    clip(cone, weight_, ViewPoint::Kind::at_source_plane, closing_cut(f.plane, facing));
-    for (auto& c : cone.corners) c.exact.sign_at_a *= facing_source_;
+    clip(added.clipped, weight_, ViewPoint::Kind::at_source_plane, closing_cut(f.plane, facing));
+    for (auto& c : added.clipped.corners) c.exact.sign_at_a *= facing_source_;
+    drop_below_horizon(added.clipped);
+    added.cone = &added.clipped;
   }
+  // An edge whose neighbour faces the same way bounds nothing. Where an occluder lies in the source's plane, its neighbour
+  // may dive behind that plane: there only pieces of the same polygon carry on.
+  added.edges.clear();
+  for (const auto& side : added.cone->sides) {
+    added.edges.push_back(side.stretch);
+    const std::uint32_t n = side.across;
+    added.edges.back().empty = n != kNone && n != source_facet_ &&
+                               (!covers || facets[n].polygon == f.polygon) && view_.facing(n) == facing;
+  }
+  return add_cone(added);
+}
 
-  // An edge on or below the horizon bounds nothing, and above the horizon the cone is the same without it: the cut by the
-  // horizon has its closing side in the horizon itself.
-  std::erase_if(cone.sides, [&](const ConeSide<Real>& side) {
-    const auto below = [&](std::uint32_t k) { return k < loop.size() && horizon(loop[k].vertex) <= 0; };
-    return side.exact.kind == ViewPlane::Kind::edge && below(side.from) && below(side.to);
-  });
+/// Meets a cone with the source's: leaves in added.edges what lies within it, and in covered_source_ what it covers.
+template <class Real>
+typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_cone(Added& added) {
+  const Cone<Real>& cone = *added.cone;
+  const ChartBox box = chart_.box_of(cone);
+  if (!chart_.meets_source(box)) return Effect::none;
 
   // Apart, by a side of the source? And within the source, of each of the occluder's edges, which stretch?
-  within_.clear();
-  for (const auto& side : cone.sides) {
-    within_.push_back(side.stretch);
-    within_.back().empty = !side.bounds;
-  }
   for (const auto& side : source_.sides) {
     fill_row(side, cone);
     bool apart = true;
     for (std::size_t k = 0; k < row_.size(); ++k) apart = apart && (row_[k].sign <= 0 || !cone.corners[k].kept);
     if (apart) return Effect::none;
     for (std::size_t k = 0; k < cone.sides.size(); ++k) {
-      if (!within_[k].empty) narrow_along(within_[k], cone, cone.sides[k], side);
+      if (!added.edges[k].empty) narrow_along(added.edges[k], cone, cone.sides[k], side);
     }
   }
 
   // Apart, by a side of the occluder? And of each of the source's edges, which stretch does it cover?
-  std::vector<Stretch<Real>>& cut = source_cut_;
-  cut.clear();
-  for (const auto& side : source_.sides) cut.push_back(side.stretch);
+  within_.clear();
+  for (const auto& side : source_.sides) within_.push_back(side.stretch);
   bool whole = true;
   for (const auto& side : cone.sides) {
     fill_row(side, source_);
@@ -302,62 +445,55 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_occluder(std::uint
     }
     if (apart) return Effect::none;
     for (std::size_t k = 0; k < source_.sides.size(); ++k) {
-      if (cut[k].empty || (lies_in(source_.sides[k]) && side_of_source > 0)) continue;
-      narrow_along(cut[k], source_, source_.sides[k], side);
+      if (within_[k].empty || (lies_in(source_.sides[k]) && side_of_source > 0)) continue;
+      narrow_along(within_[k], source_, source_.sides[k], side);
     }
   }
   if (whole) return Effect::whole;
 
   for (std::size_t k = 0; k < source_.sides.size(); ++k) {
-    if (!cut[k].empty) covered_source_[k].push_back(cut[k]);
+    if (!within_[k].empty) covered_source_[k].push_back(within_[k]);
   }
-  for (std::size_t k = 0; k < cone.sides.size(); ++k) {
-    cone.sides[k].stretch = within_[k];
-    cone.sides[k].bounds = !within_[k].empty;
-  }
-  chart_.set(occluder_count_, box);
-  ++occluder_count_;
+  added.bounds = std::any_of(added.edges.begin(), added.edges.end(), [](const auto& e) { return !e.empty; });
+  chart_.set(count_, box);
+  ++count_;
   return Effect::part;
 }
 
 /// Adds to covered_ the stretches of a's bounding edges that b covers on their outer sides, or stands for.
 template <class Real>
-void VisibleRegion<Real>::cover(const Cone<Real>& a, const Cone<Real>& b, bool b_first) {
-  within_.clear();
-  for (const auto& side : a.sides) {
-    within_.push_back(side.stretch);
-    within_.back().empty = !side.bounds;
-  }
-  for (const auto& side : b.sides) {
-    fill_row(side, a);
+void VisibleRegion<Real>::cover(const Added& a, const Added& b, bool b_first) {
+  const Cone<Real>& cone = *a.cone;
+  within_.assign(a.edges.begin(), a.edges.end());
+  for (const auto& side : b.cone->sides) {
+    fill_row(side, cone);
     int side_of_a = 0;
     bool out_of_reach = true;
     for (std::size_t k = 0; k < row_.size(); ++k) {
       if (row_[k].sign >= 0) out_of_reach = false;
-      if (a.corners[k].kept && row_[k].sign != 0) side_of_a = row_[k].sign;
+      if (cone.corners[k].kept && row_[k].sign != 0) side_of_a = row_[k].sign;
     }
     if (out_of_reach) return;
-    for (std::size_t k = 0; k < a.sides.size(); ++k) {
+    for (std::size_t k = 0; k < cone.sides.size(); ++k) {
       if (within_[k].empty) continue;
-      if (lies_in(a.sides[k])) {
+      if (lies_in(cone.sides[k])) {
         // On one line. On opposite sides of it b covers a's outer side; on the same side, the first stands for both.
         if (side_of_a > 0 && !b_first) within_[k].empty = true;
       } else {
-        narrow_along(within_[k], a, a.sides[k], side);
+        narrow_along(within_[k], cone, cone.sides[k], side);
       }
     }
   }
-  for (std::size_t k = 0; k < a.sides.size(); ++k) {
+  for (std::size_t k = 0; k < cone.sides.size(); ++k) {
     if (!within_[k].empty) covered_[k].push_back(within_[k]);
   }
 }
 
 template <class Real>
 template <class Sink>
-void VisibleRegion<Real>::finish_edge(const Cone<Real>& cone, const ConeSide<Real>& side,
+void VisibleRegion<Real>::finish_edge(const Cone<Real>& cone, const ConeSide<Real>& side, const Stretch<Real>& edge,
                                       std::vector<Stretch<Real>>& covered, bool of_source, const Sink& sink) {
   std::sort(covered.begin(), covered.end(), [](const auto& a, const auto& b) { return a.lo < b.lo; });
-  const Stretch<Real>& edge = side.stretch;
   Real reached = edge.lo, reached_error = edge.lo_error;
   const auto visible_until = [&](const Real& t, const Real& t_error) {
     // A stretch that is empty only by rounding is handed on with no length and its errors.
@@ -381,16 +517,17 @@ template <class Real>
 template <class Sink>
 void VisibleRegion<Real>::for_each_arc(const Sink& sink) {
   for (std::size_t k = 0; k < source_.sides.size(); ++k) {
-    finish_edge(source_, source_.sides[k], covered_source_[k], true, sink);
+    finish_edge(source_, source_.sides[k], source_.sides[k].stretch, covered_source_[k], true, sink);
   }
-  for (std::size_t i = 0; i < occluder_count_; ++i) {
-    const Cone<Real>& a = occluders_[i];
-    if (std::none_of(a.sides.begin(), a.sides.end(), [](const auto& s) { return s.bounds; })) continue;
-    if (covered_.size() < a.sides.size()) covered_.resize(a.sides.size());
-    for (std::size_t k = 0; k < a.sides.size(); ++k) covered_[k].clear();
-    chart_.for_each_overlap(i, occluder_count_, [&](std::size_t j) { cover(a, occluders_[j], j < i); });
-    for (std::size_t k = 0; k < a.sides.size(); ++k) {
-      if (a.sides[k].bounds) finish_edge(a, a.sides[k], covered_[k], false, sink);
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Added& a = added_[i];
+    if (!a.bounds) continue;
+    const std::size_t n = a.edges.size();
+    if (covered_.size() < n) covered_.resize(n);
+    for (std::size_t k = 0; k < n; ++k) covered_[k].clear();
+    chart_.for_each_overlap(i, count_, [&](std::size_t j) { cover(a, added_[j], j < i); });
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!a.edges[k].empty) finish_edge(*a.cone, a.cone->sides[k], a.edges[k], covered_[k], false, sink);
     }
   }
 }

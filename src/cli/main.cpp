@@ -3,23 +3,63 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <new>
+#include <stdexcept>
 
 #include "src/cli/cases.h"
+#include "src/cli/verbs.h"
+#include "src/output/manifest.h"
 #include "src/scene/input_error.h"
+#include "src/solve/radiosity_system.h"
 
-int main(int argc, char** argv) {
-  CLI::App app{"exitance: radiosity with exact visibility"};
-  app.require_subcommand(1);
-  exitance::add_cases(app);
+namespace {
+
+using namespace exitance;
+
+int refuse(ExitCode code, std::string message) {
+  std::ranges::replace(message, '\n', ' ');
+  fmt::print(stderr, "exitance: {}\n", message);
+  return code;
+}
+
+int run(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
+    if (!app.get_subcommands().empty()) return done;
+    return refuse(usage, "a verb is needed; see exitance --help");
   } catch (const CLI::RuntimeError& ended) {
     return ended.get_exit_code();
   } catch (const CLI::ParseError& wrong) {
-    return app.exit(wrong) == 0 ? 0 : 2;
-  } catch (const exitance::InputError& wrong) {
-    fmt::print(stderr, "exitance: {}\n", wrong.what());
-    return 3;
+    if (wrong.get_exit_code() == 0) return app.exit(wrong);  // --help, --version
+    return refuse(usage, std::string(wrong.what()) + "; see exitance --help and exitance VERB --help");
+  } catch (const InputError& wrong) {
+    return refuse(bad_input, wrong.what());
+  } catch (const LimitError& reached) {
+    return refuse(limit_reached, reached.what());
+  } catch (const std::bad_alloc&) {
+    return refuse(limit_reached, "out of memory");
+  } catch (const InvalidSystem& failed) {
+    return refuse(check_failed, failed.what());
+  } catch (const std::invalid_argument& wrong) {
+    return refuse(usage, wrong.what());
+  } catch (const std::exception& failed) {
+    return refuse(check_failed, failed.what());
   }
-  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"exitance: radiosity with exact visibility", "exitance"};
+  app.set_version_flag("--version", build_manifest().version);
+  app.require_subcommand(0, 1);
+  app.footer(
+      "Exit codes: 0 done; 1 a numerical check failed; 2 usage; 3 bad input; 4 a limit was reached.\n"
+      "Results go to stdout or to -o, progress and messages to stderr.");
+  add_cases(app);
+  add_check(app);
+  add_generate(app);
+  add_solve(app);
+  return run(app, argc, argv);
 }

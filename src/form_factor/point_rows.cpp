@@ -112,14 +112,6 @@ using RowMakers = tbb::enumerable_thread_specific<RowMaker>;
 
 }  // namespace
 
-PairCounts& PairCounts::operator+=(const PairCounts& other) {
-  facing_away += other.facing_away;
-  open += other.open;
-  blocked += other.blocked;
-  partial += other.partial;
-  return *this;
-}
-
 PointRowStatistics& PointRowStatistics::operator+=(const PointRowStatistics& other) {
   pairs += other.pairs;
   stages += other.stages;
@@ -167,6 +159,19 @@ void point_column(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t pa
       F_error[e] = f.error;
     }
   });
+}
+
+PointFormFactor patch_form_factor(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t receiver,
+                                  std::size_t source) {
+  RowMaker maker(mesh, soup);
+  const Patch& patch = mesh.patches[receiver];
+  PointFormFactor mean;
+  for (std::uint32_t e = patch.element_first; e < patch.element_first + patch.element_count; ++e) {
+    const PointFormFactor f = maker.entry(e, source);
+    mean.F += f.F * mesh.elements[e].area / patch.area;
+    mean.error += f.error * mesh.elements[e].area / patch.area;
+  }
+  return mean;
 }
 
 double expected_row_length(const PatchMesh& mesh, const PolygonSoup& soup) {

@@ -9,16 +9,9 @@
 #include "src/form_factor/form_factor_matrix.h"
 #include "src/output/progress.h"
 #include "src/scene/patch_mesh.h"
+#include "src/visibility/pair_counts.h"
 
 namespace exitance {
-
-/// How pairs of element and patch ended.
-struct PairCounts {
-  std::uint64_t facing_away = 0;  ///< the patch's front is not turned to the point, or it lies below the horizon
-  std::uint64_t open = 0, blocked = 0, partial = 0;
-
-  PairCounts& operator+=(const PairCounts& other);
-};
 
 struct PointRowStatistics {
   PairCounts pairs;
@@ -41,14 +34,18 @@ struct PointRows {
 /// Proven error that double precision must reach, else extended precision is asked.
 inline constexpr double kPointTolerance = 1e-12;
 
-/// Rows of the elements `first` … `last` − 1. In parallel; any number of threads gives the same bits. The mesh must be of
-/// the soup's scene (make_patch_mesh).
+/// Rows of the elements `first` … `last` − 1. In parallel; any number of threads gives the same bits. The mesh must be
+/// of the soup's scene (make_patch_mesh).
 PointRows point_rows(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t first, std::size_t last,
                      const Progress& progress = {});
 
 /// Form factor F[e] from every element to one patch, with error bounds: a column, for shooting without a matrix.
 void point_column(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t patch, std::span<double> F,
                   std::span<double> F_error);
+
+/// Form factor from the elements of one patch, averaged by area, to another patch: the pair integrated anew.
+PointFormFactor patch_form_factor(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t receiver,
+                                  std::size_t source);
 
 /// Entries of a row expected per element, from a sample of elements: for estimates of memory. Between 0 and patches.
 double expected_row_length(const PatchMesh& mesh, const PolygonSoup& soup);

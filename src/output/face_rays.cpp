@@ -97,8 +97,8 @@ FaceRays::FaceRays(const Faces& faces, const Vec3& origin) : state_(std::make_un
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(state_->scene, geometry);
   rtcReleaseGeometry(geometry);
-  // Embree builds with flush-to-zero on. Where that is a thread's first use of TBB, its arena would keep the mode and hand
-  // it to every task ever after: an arena of our own, made before, and no other threads in it.
+  // Embree builds with flush-to-zero on. Where that is a thread's first use of TBB, its arena would keep the mode and
+  // hand it to every task ever after: an arena of our own, made before, and no other threads in it.
   tbb::task_arena(1).execute([&] { rtcCommitScene(state_->scene); });
   if (rtcGetDeviceError(state_->device) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot take the scene");
 }

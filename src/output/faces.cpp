@@ -71,6 +71,26 @@ double Faces::area(std::size_t face) const {
   return norm(sum) / 2;
 }
 
+Faces make_faces(const PatchMesh& mesh, const PolygonSoup& soup) {
+  Faces faces(1e-9 * soup.extent());
+  std::vector<Vec3> whole_facet;
+  for (std::uint32_t e = 0; e < mesh.elements.size(); ++e) {
+    const Element& element = mesh.elements[e];
+    for (const PatchPiece& piece : mesh.pieces_of(element)) {
+      std::span<const Vec3> loop = mesh.loop(piece);
+      if (loop.empty()) {
+        whole_facet.clear();
+        for (const Corner& c : soup.corners(soup.facets()[piece.facet])) {
+          whole_facet.push_back(soup.vertices()[c.vertex]);
+        }
+        loop = whole_facet;
+      }
+      faces.add(mesh.patches[element.patch].surface, element.patch, e, loop);
+    }
+  }
+  return faces;
+}
+
 std::vector<double> point_averages(const Faces& faces, std::span<const double> values, std::uint32_t components,
                                    std::span<const std::uint8_t> hidden) {
   // Hidden elements weigh so little that they show only where there is nothing else.

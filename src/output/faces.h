@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/vec3.h"
+#include "src/scene/patch_mesh.h"
 
 namespace exitance {
 
@@ -37,6 +38,9 @@ class Faces {
   std::vector<std::uint32_t> first_{0}, corner_, surface_, patch_, element_;
   std::unordered_multimap<std::uint64_t, std::uint32_t> points_of_surface_;  // by grid cell, of the last surface
 };
+
+/// The pieces of all elements, in order; corners merge within 1e-9 of the soup's extent.
+Faces make_faces(const PatchMesh& mesh, const PolygonSoup& soup);
 
 /// Values at the points: the mean over the faces that meet there, weighted by area, of their elements' values. values:
 /// elements × components; hidden: one an element, not 0 where it is to be left out (a point in contact, which sees

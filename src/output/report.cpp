@@ -1,7 +1,5 @@
 #include "src/output/report.h"
 
-#include <sys/resource.h>
-
 #include <nlohmann/json.hpp>
 
 #include "src/output/whole_file.h"
@@ -37,8 +35,11 @@ std::string to_json(const Report& r) {
                      {"iterations", r.iterations},
                      {"residual", r.residual},
                      {"error_bound", r.error_bound},
-                     {"energy_balance_defect", r.energy_balance_defect},
+                     {"solver_error_bound", r.solver_error_bound},
+                     {"form_factor_error", r.form_factor_error},
+                     {"energy_balance_defect", or_null(r.energy_balance_defect)},
                      {"closure_max_defect", or_null(r.closure_max_defect)},
+                     {"measured_points", r.measured_points},
                      {"covered_points", r.covered_points},
                      {"reciprocity_max_defect", or_null(r.reciprocity_max_defect)},
                      {"B_min", r.B_min},
@@ -64,12 +65,6 @@ std::string to_json(const Report& r) {
 
 void write_report(const std::filesystem::path& path, const Report& report) {
   write_whole_file(path, [&](std::ostream& out) { out << to_json(report); });
-}
-
-std::uint64_t peak_memory_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace exitance

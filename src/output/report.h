@@ -9,13 +9,9 @@
 #include <vector>
 
 #include "src/output/manifest.h"
+#include "src/visibility/pair_counts.h"
 
 namespace exitance {
-
-/// Pairs of receiver and source by how they ended. The rest of them were integrated in part.
-struct PairCounts {
-  std::uint64_t facing_away = 0, open = 0, blocked = 0, partial = 0;
-};
 
 /// Wall-clock time [s].
 struct Seconds {
@@ -35,13 +31,17 @@ struct Report {
 
   bool converged = false;
   std::uint64_t iterations = 0;
-  double residual = 0;                       ///< relative to max B
-  double error_bound = 0;                    ///< of B, ∞-norm relative to max B
-  double energy_balance_defect = 0;          ///< relative to what is emitted, worst band
-  std::optional<double> closure_max_defect;  ///< none where the scene is open
+  double residual = 0;            ///< relative to max B
+  double error_bound = 0;         ///< of B, ∞-norm relative to max B: the solver's and the form factors'
+  double solver_error_bound = 0;  ///< its first part: B* solves the system with the form factors as they are
+  double form_factor_error = 0;   ///< its second part: what the errors of the form factors add
+  /// Relative to what is emitted, worst band. None where the form factors were not complete.
+  std::optional<double> energy_balance_defect;
+  std::optional<double> closure_max_defect;  ///< none where the scene is open or nothing was measured
+  std::uint64_t measured_points = 0;         ///< sample points for which closure, covered points and pairs were counted
   std::uint64_t covered_points = 0;
   std::optional<double> reciprocity_max_defect;  ///< of pairs integrated anew; none where none was
-  double B_min = 0, B_max = 0;                   ///< of the elements, over all bands
+  double B_min = 0, B_max = 0;                   ///< over all bands, of the elements that see something
 
   PairCounts pairs;
   std::map<std::string, std::uint64_t> predicate_stages;  ///< how many signs each stage decided
@@ -61,8 +61,5 @@ std::string to_json(const Report& report);
 
 /// Throws InputError when the file cannot be written.
 void write_report(const std::filesystem::path& path, const Report& report);
-
-/// Most memory this process has held so far [bytes].
-std::uint64_t peak_memory_bytes();
 
 }  // namespace exitance

@@ -91,7 +91,7 @@ class Furnisher {
       material.E = {0, 0, 0};
     }
     scene_.materials[lamp].E = {40, 36, 30};
-    const std::uint32_t groups = std::clamp(polygons / 100, 4u, 100u);
+    const std::uint32_t groups = std::clamp(polygons / 100, 4u, 20u);
     columns_ = static_cast<std::uint32_t>(std::sqrt(groups));
     rows_ = groups / columns_;
     shell_ = 1 + columns_ * rows_ + 2 * (columns_ + rows_);

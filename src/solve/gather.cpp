@@ -103,6 +103,7 @@ Solution gather(const RadiositySystem& s, const GatherOptions& options) {
     solve_direct(s, solution.B);
   }
 
+  const auto stopped = [&] { return options.stop && options.stop(); };
   LogarithmicProgress progress(options.progress, options.tolerance);
   for (;;) {
     Residual r = residual(s, solution.B);
@@ -112,7 +113,7 @@ Solution gather(const RadiositySystem& s, const GatherOptions& options) {
     solution.converged = solution.error_bound <= options.tolerance;
     progress.report(solution.error_bound);
     if (solution.converged || only_rounding_is_left(r, bounds, options.tolerance) ||
-        solution.iterations >= options.max_iterations) {
+        solution.iterations >= options.max_iterations || stopped()) {
       solution.H = std::move(r.H);
       return solution;
     }
@@ -122,7 +123,7 @@ Solution gather(const RadiositySystem& s, const GatherOptions& options) {
       continue;
     }
     bool solved = false;
-    while (!solved && solution.iterations < options.max_iterations) {
+    while (!solved && solution.iterations < options.max_iterations && !stopped()) {
       solved = looks_solved(sweep(s, solution.B), q, r.max_B, options.tolerance);
       ++solution.iterations;
     }

@@ -2,6 +2,7 @@
 // Radiosity by gathering: the whole matrix at once.
 
 #include <cstdint>
+#include <functional>
 
 #include "src/output/progress.h"
 #include "src/solve/radiosity_system.h"
@@ -23,11 +24,12 @@ struct GatherOptions {
   double tolerance = 1e-12;               ///< of ‖B − B*‖∞ relative to max |B|, each band; > 0
   std::uint64_t max_iterations = 100000;  ///< sweeps or Krylov steps
   Progress progress = {};                 ///< fraction by the logarithm of the error bound
+  std::function<bool()> stop = {};        ///< asked between sweeps: true ends the work with what there is; may be empty
 };
 
 /// Solves every band to the tolerance, proven by the residual of what is returned (error_bound.h). Whatever the method,
 /// its answer is verified that way and finished by Gauss–Seidel (Jacobi: Jacobi) sweeps where it falls short. When
-/// rounding or max_iterations stops it earlier, `converged` is false and error_bound says what was reached.
+/// rounding, max_iterations or `stop` ends it earlier, `converged` is false and error_bound says what was reached.
 /// Throws InvalidSystem (see check and contraction), std::invalid_argument on a tolerance that is not positive, and
 /// LimitError when a direct solution is asked of more than kDirectLimit patches.
 Solution gather(const RadiositySystem& system, const GatherOptions& options = {});

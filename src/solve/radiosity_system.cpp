@@ -45,9 +45,7 @@ void check_row(const FormFactorMatrix& F, std::size_t i) {
     sum.add(F.F[k]);
     error.add(F.F_error[k]);
   }
-  // A row made to sum to 1 in plain arithmetic may miss it by one rounding an entry.
-  const double rounding = static_cast<double>(F.row(i).size() + 4) * std::numeric_limits<double>::epsilon();
-  if (!(sum.value() <= 1 + error.value() + rounding)) {
+  if (!(sum.value() <= 1 + error.value() + row_sum_rounding(F.row(i).size()))) {
     std::ostringstream what;
     what << "form factors of patch " << i << " sum to 1 + " << sum.value() - 1 << ", more than their errors ("
          << error.value() << ") explain";

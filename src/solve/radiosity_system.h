@@ -1,7 +1,9 @@
 #pragma once
 // The radiosity equation of a finite number of patches: B_p = E_p + ρ_p H_p, H_p = Σ_q F_pq B_q, for every band.
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -16,6 +18,12 @@ class InvalidSystem : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
 };
+
+/// By how much more than its errors a row of that many form factors may sum to more than 1: a row made to sum to 1 in
+/// plain arithmetic misses it by up to one rounding an entry.
+constexpr double row_sum_rounding(std::size_t entries) {
+  return static_cast<double>(entries + 4) * std::numeric_limits<double>::epsilon();
+}
 
 /// Patches, which shoot, cut into elements, which receive. Values of patch p and band b stand at [p * bands + b].
 struct Discretisation {
@@ -47,7 +55,7 @@ struct RadiositySystem {
 };
 
 /// Throws InvalidSystem when the sizes do not match, a number is out of range, or a row of F sums to more than 1 plus
-/// its errors (no bound of the solution's error could then be proven).
+/// its errors (row_sum_rounding aside; no bound of the solution's error could then be proven).
 void check(const RadiositySystem& system);
 
 /// The system of the patches, from the rows of their elements (elements × patches) averaged by area.

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
+#include <sstream>
 
 #include "src/solve/compensated.h"
 #include "src/solve/error_bound.h"
@@ -42,6 +42,10 @@ class Shooting {
         unshot_(d.E) {
     for (std::size_t i = 0; i < d.rho.size(); ++i) {
       largest_rho_[i % d.bands] = std::max(largest_rho_[i % d.bands], d.rho[i]);
+    }
+    for (double& q : largest_rho_) {
+      q *= 1 + row_sum_rounding(d.patches());
+      if (!(q < 1)) throw InvalidSystem("a reflectance is so near 1 that nothing bounds the solution");
     }
     measure();
   }
@@ -149,9 +153,11 @@ class Shooting {
   void check_row_sums() {
     for (std::size_t e = 0; e < d_.elements(); ++e) {
       row_sum_[e].add(F_[e] - F_error_[e]);
-      if (!(row_sum_[e].value() <= 1 + 8 * kUnitRoundoff)) {
-        throw InvalidSystem("form factors of element " + std::to_string(e) + " sum to " +
-                            std::to_string(row_sum_[e].value()) + ", errors taken off; they must not exceed 1");
+      if (!(row_sum_[e].value() <= 1 + row_sum_rounding(d_.patches()))) {
+        std::ostringstream what;
+        what << "form factors of element " << e << " sum to 1 + " << row_sum_[e].value() - 1
+             << ", more than their errors explain";
+        throw InvalidSystem(what.str());
       }
     }
   }
@@ -198,7 +204,8 @@ ShootSolution shoot(const Discretisation& d, const ShootColumn& column, const Sh
   };
   double shown = 0;
   std::uint64_t shots = 0;
-  while (shots < options.max_shots && !solved() && !state.only_rounding_is_left(options.tolerance)) {
+  const auto stopped = [&] { return shots >= options.max_shots || (options.stop && options.stop()); };
+  while (!stopped() && !solved() && !state.only_rounding_is_left(options.tolerance)) {
     state.shoot_strongest(column);
     ++shots;
     if (options.progress) {

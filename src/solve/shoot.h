@@ -22,7 +22,8 @@ ShootColumn column_of(const FormFactorMatrix& transposed);
 struct ShootOptions {
   double tolerance = 1e-12;  ///< of ‖B − B*‖∞ relative to max |B|, each band; > 0
   std::uint64_t max_shots = UINT64_MAX;
-  Progress progress = {};  ///< fraction by the logarithm of the unshot energy
+  Progress progress = {};           ///< fraction by the logarithm of the unshot energy
+  std::function<bool()> stop = {};  ///< asked between shots: true ends the work with what there is; may be empty
 };
 
 struct ShootSolution {
@@ -38,13 +39,15 @@ struct ShootSolution {
 /// is the area mean of theirs.
 ///
 /// The exitance shot so far solves the system but for exactly the unshot one, so ‖B − B*‖∞ ≤ ‖unshot‖∞ / (1 − max ρ),
-/// rounding added; it stops when that is within the tolerance, when only rounding is left, or at max_shots (`converged`
-/// is false then). That rows of F sum to at most 1 is part of the bound and cannot be checked before all columns are
-/// known: throws InvalidSystem as soon as those seen sum to more than 1 plus their errors in some element. Throws
-/// std::invalid_argument on a tolerance that is not positive. Any number of threads gives the same bits.
+/// rounding added; it stops when that is within the tolerance, when only rounding is left, at max_shots or when `stop`
+/// says so (`converged` is false then). That rows of F sum to at most 1 is part of the bound and cannot be checked
+/// before all columns are known: throws InvalidSystem as soon as those seen sum to more than 1 plus their errors (and
+/// row_sum_rounding) in
+/// some element. Throws std::invalid_argument on a tolerance that is not positive. Any number of threads gives the same
+/// bits.
 ShootSolution shoot(const Discretisation& discretisation, const ShootColumn& column, const ShootOptions& options = {});
 
-/// Ambient exitance estimate of each band (the paper's section 4.3): what the unshot energy becomes by all its
+/// Ambient exitance estimate of each band (Cohen et al.): what the unshot energy becomes by all its
 /// reflections when spread evenly, Σ A unshot / Σ A / (1 − Σ A ρ / Σ A). For display only: show B_p + ρ_p · ambient.
 std::vector<double> ambient_estimate(const Discretisation& discretisation, std::span<const double> unshot);
 

@@ -118,7 +118,7 @@ TEST_F(SceneCheck, BadFaces) {
     EXPECT_EQ(find(report, kind)->count, 1u) << name_of(kind);
   }
   EXPECT_EQ(find(report, FindingKind::zero_area)->places.at(0).object, "thing");
-  EXPECT_EQ(find(report, FindingKind::self_intersecting)->places.at(0).line, 16u);
+  EXPECT_EQ(find(report, FindingKind::self_intersecting)->places.at(0).line, 17u);
   EXPECT_EQ(find(report, FindingKind::duplicate_face)->amount, 0.5);
   // The corner lies 0.25 above the other three's plane; the middle plane halves that, tilted.
   EXPECT_NEAR(find(report, FindingKind::non_planar)->amount, 0.0625, 0.01);

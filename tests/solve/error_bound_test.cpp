@@ -24,6 +24,28 @@ TEST(ErrorBounds, HoldForAnyVectorWhatever) {
   }
 }
 
+TEST(ErrorBounds, CountTheRoundingOfAResidualThatVanishes) {
+  // Solutions to the last bit: the computed residual is often exactly 0, the true error hardly ever.
+  RandomNumbers random(2);
+  int vanished = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const double F = random.below(1);
+    const RadiositySystem system{1,
+                                 {1, 1},
+                                 {random.below(0.9), random.below(0.9)},
+                                 {random.below(5), random.below(5)},
+                                 dense_matrix(2, {0, F, F, 0})};
+    GatherOptions options;
+    options.tolerance = 1e-18;
+    const Solution solution = gather(system, options);
+    const double error = true_error(system, solution.B, true_solution(system));
+    if (solution.residual == 0 && error > 0) ++vanished;
+    EXPECT_LE(error, solution.error_bound);
+    EXPECT_LT(solution.error_bound, 1e-13);
+  }
+  EXPECT_GT(vanished, 50);
+}
+
 TEST(ErrorBounds, AreAttainedByAConstantResidual) {
   // Rows that sum to 1 and one reflectance: a constant residual r leaves the constant error r / (1 − ρ).
   const RadiositySystem system{1, {1, 1}, {0.75, 0.75}, {1, 1}, dense_matrix(2, {0, 1, 1, 0})};

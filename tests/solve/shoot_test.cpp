@@ -122,6 +122,29 @@ TEST(Shoot, ShotLimitLeavesABoundThatHoldsAndTheExactResidual) {
   for (std::size_t i = 0; i < shot.size(); ++i) EXPECT_NEAR(r.r[i], solution.unshot[i], 1e-12);
 }
 
+TEST(Shoot, UnreachableToleranceIsAdmittedWithABoundThatHolds) {
+  RandomNumbers random(2);
+  int vanished = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const double F = random.below(1);
+    const RadiositySystem system{1,
+                                 {1, 1},
+                                 {random.below(0.9), random.below(0.9)},
+                                 {random.below(5), random.below(5)},
+                                 dense_matrix(2, {0, F, F, 0})};
+    const FormFactorMatrix columns = transpose(system.F);
+    ShootOptions options;
+    options.tolerance = 1e-18;
+    const ShootSolution solution = shoot(one_element_each(system), column_of(columns), options);
+    const double error = true_error(system, solution.patches.B, true_solution(system));
+    EXPECT_FALSE(solution.patches.converged);
+    EXPECT_LE(error, solution.patches.error_bound);
+    EXPECT_LT(solution.patches.error_bound, 1e-13);
+    if (error * (1 - *std::max_element(system.rho.begin(), system.rho.end())) > solution.patches.residual) ++vanished;
+  }
+  EXPECT_GT(vanished, 3);  // the unshot alone would have been no bound
+}
+
 TEST(Shoot, NothingEmitsNothingIsShot) {
   RadiositySystem system = random_enclosure(10, 3, 0.9, 1.0, 5);
   system.E.assign(system.E.size(), 0.0);

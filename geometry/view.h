@@ -1,0 +1,72 @@
+#pragma once
+// A receiver's view: on which side of it, and which side of, things are, exactly; each sign is found once a view.
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/polygon_soup.h"
+
+namespace exitance {
+
+/// A point that receives, with the normal of its surface (any length but zero). A point of a facet lies on it by identity,
+/// not by sign: it names the facet, and then neither that facet nor what lies in its plane hides anything from it.
+struct Receiver {
+  Vec3 point;
+  Vec3 normal;
+  std::uint32_t facet = kNone;
+};
+
+class View {
+ public:
+  explicit View(const PolygonSoup& soup);
+
+  /// Moves to another receiver; forgets all signs. Its numbers must be finite, the normal not zero.
+  void look_from(const Receiver& receiver);
+
+  const PolygonSoup& soup() const { return soup_; }
+  const Receiver& receiver() const { return receiver_; }
+  StageCounts& counts() { return counts_; }
+
+  /// Counts the views, so that what was computed for one can be told from what belongs to another.
+  std::uint32_t epoch() const { return epoch_; }
+
+  /// Whether a facet is the receiver's own or lies in its plane: it can't be seen and hides nothing.
+  bool excluded(std::uint32_t facet) const;
+
+  /// The side from which an occluding facet is seen: +1 front, −1 back, 0 when it hides nothing from here that others do not
+  /// hide: excluded, edge-on, or the back face of a shell that the point is outside of.
+  int facing(std::uint32_t facet);
+
+  /// Side of a vertex against the receiver's horizon: +1 above.
+  int horizon(std::uint32_t vertex);
+
+  /// Whether the point is outside of the shell's box, grown because a point that lies in a contact by identity may be
+  /// rounded out of it.
+  bool outside(const Shell& shell) const {
+    return !shell.box.contains(receiver_.point, 0x1p-40 * soup_.extent());
+  }
+
+  /// Whether something that lies in the receiver's plane covers it.
+  bool covered() const { return covered_; }
+
+  /// Whether the receiver lies within a facet in its plane that faces against its own: two solids in contact, or the two
+  /// sides of a sheet.
+  bool in_contact() const { return in_contact_; }
+
+ private:
+  struct Seen {
+    std::uint32_t epoch = 0;
+    std::int8_t sign = 0;
+  };
+
+  bool holds_receiver(std::uint32_t facet);
+
+  const PolygonSoup& soup_;
+  Receiver receiver_;
+  StageCounts counts_;
+  std::uint32_t epoch_ = 0;
+  bool covered_ = false, in_contact_ = false;
+  std::vector<Seen> facets_, vertices_;
+};
+
+}  // namespace exitance

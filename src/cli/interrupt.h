@@ -1,0 +1,11 @@
+#pragma once
+// Ctrl-C as a wish to end early.
+
+namespace exitance {
+
+/// From now on the first SIGINT or SIGTERM only sets a flag; a second one ends the program as usual.
+void catch_interrupts();
+
+bool interrupted();
+
+}  // namespace exitance

@@ -1,0 +1,211 @@
+// exitance solve: the radiosity of a scene.
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "src/cli/interrupt.h"
+#include "src/cli/progress_display.h"
+#include "src/cli/scene_options.h"
+#include "src/cli/verbs.h"
+#include "src/output/process_memory.h"
+#include "src/output/report.h"
+#include "src/output/result_folder.h"
+#include "src/solve/scene_solution.h"
+#include "src/solve/solution_files.h"
+
+namespace exitance {
+namespace {
+
+/// A closed scene whose closure defect is above this is a failed check.
+constexpr double kLargestClosureDefect = 1e-9;
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string number_or(const std::optional<double>& value, const char* otherwise) {
+  return value ? fmt::format("{:.3g}", *value) : otherwise;
+}
+
+std::string summary(const Report& r) {
+  const double pairs = static_cast<double>(
+      std::max<std::uint64_t>(1, r.pairs.facing_away + r.pairs.open + r.pairs.blocked + r.pairs.partial));
+  const auto percent = [&](std::uint64_t count) { return 100 * static_cast<double>(count) / pairs; };
+  std::string text = fmt::format("{}\n", r.scene);
+  const auto line = [&](std::string_view name, const std::string& value) {
+    text += fmt::format("  {:<22}{}\n", name, value);
+  };
+  line("surfaces", fmt::format("{}", r.surfaces));
+  line("patches, elements", fmt::format("{}, {}", r.patches, r.elements));
+  line("method", fmt::format("{}, receivers {}, visibility {}", r.method, r.receivers, r.visibility));
+  line("pairs", fmt::format("{:.1f} % facing away, {:.1f} % open, {:.1f} % blocked, {:.1f} % partial",
+                            percent(r.pairs.facing_away), percent(r.pairs.open), percent(r.pairs.blocked),
+                            percent(r.pairs.partial)));
+  line("time", fmt::format("{:.2f} s: form factors {:.2f}, solving {:.2f}, output {:.2f}; {} threads", r.seconds.total,
+                           r.seconds.form_factors, r.seconds.solve, r.seconds.output, r.threads));
+  line("memory", fmt::format("{:.0f} MiB at most", static_cast<double>(r.peak_memory_bytes) * 0x1p-20));
+  line("iterations", fmt::format("{}, residual {:.3g}", r.iterations, r.residual));
+  line("closure defect",
+       fmt::format("{} ({} sample points measured, {} in contact)",
+                   number_or(r.closure_max_defect, r.measured_points > 0 ? "none, the scene is open" : "not measured"),
+                   r.measured_points, r.covered_points));
+  line("reciprocity defect", number_or(r.reciprocity_max_defect, "not measured") + " (quadrature of sample points)");
+  line("energy balance defect", number_or(r.energy_balance_defect, "not measured") + " (quadrature of sample points)");
+  line("error bound", fmt::format("{:.3g} of B max (solver {:.3g}, form factors {:.3g})", r.error_bound,
+                                  r.solver_error_bound, r.form_factor_error));
+  line("B min, B max", fmt::format("{:.12g}, {:.12g} {}", r.B_min, r.B_max, r.unit));
+  return text;
+}
+
+class Solve {
+ public:
+  explicit Solve(CLI::App& verb) : verb_(verb) {
+    scene_.add_to(verb);
+    verb.add_option("--method", method_,
+                    "gather: whole matrix; shoot: progressive refinement, without a matrix if need be")
+        ->check(CLI::IsMember({"gather", "shoot"}))
+        ->capture_default_str();
+    verb.add_option("--solver", solver_, "How gathering solves")
+        ->check(CLI::IsMember({"gauss-seidel", "jacobi", "krylov", "direct"}))
+        ->capture_default_str();
+    verb.add_option("--receivers", receivers_, "One sample point an element")
+        ->check(CLI::IsMember({"points"}))
+        ->capture_default_str();
+    verb.add_option("--visibility", visibility_, "How visibility is decided")
+        ->check(CLI::IsMember({"exact"}))
+        ->capture_default_str();
+    verb.add_option("--patch-size", options_.mesh.patch_size, "Longest edge of a patch [m]; 0: surfaces as they are")
+        ->capture_default_str();
+    verb.add_option("--elements", options_.mesh.elements_per_edge, "Elements along the edge of a patch")
+        ->capture_default_str();
+    verb.add_option("--tolerance", options_.tolerance, "Bound of the solver's error of B, relative to B max")
+        ->capture_default_str();
+    verb.add_option("--shots", shots_, "Most shots of --method shoot; what is reached then is saved, exit code 4");
+    verb.add_option("--time-limit", time_limit_, "Seconds after which to end likewise")->check(CLI::PositiveNumber);
+    verb.add_option("--memory-limit", memory_limit_,
+                    "Memory for form factors [GiB]; all that is available unless given")
+        ->check(CLI::PositiveNumber);
+    verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
+        ->check(CLI::PositiveNumber);
+    verb.add_option("--seed", options_.seed, "Of the pairs whose reciprocity is measured")->capture_default_str();
+    verb.add_option("-o,--output", folder_, "Folder for result.json, solution.vtp, solution.ply and image.png");
+    verb.add_flag("--json", json_, "Print result.json instead of a summary");
+    verb.footer(fmt::format(
+        "Exit code 1: the solver did not reach the tolerance, or front and back of a closed scene miss 1 by more than "
+        "{} at\n"
+        "some sample point. The results are saved all the same. Ctrl-C saves what has been shot so far, exit code 4.",
+        kLargestClosureDefect));
+  }
+
+  void run() {
+    const auto start = Clock::now();
+    const std::size_t threads =
+        threads_ ? *threads_ : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    catch_interrupts();
+    if (shots_ && method_ != "shoot") throw CLI::ValidationError("--shots", "needs --method shoot");
+
+    const Scene scene = scene_.read();
+    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    std::optional<ResultFolder> folder;
+    if (!folder_.empty()) folder.emplace(folder_);
+    const double loading = seconds_since(start);
+
+    const SceneSolution solution = solve(scene, start);
+    Report report = make_report(scene, solution);
+    report.method = method_;
+    report.threads = static_cast<unsigned>(threads);
+    report.seed = options_.seed;
+    report.options = options_given();
+    report.seconds.load = loading;
+
+    const auto before_output = Clock::now();
+    if (folder) write_solution(folder->draft(), scene, solution);
+    report.seconds.output = seconds_since(before_output);
+    report.seconds.total = seconds_since(start);
+    report.peak_memory_bytes = peak_memory_bytes();
+    if (folder) {
+      write_report(folder->draft() / "result.json", report);
+      folder->publish();
+    }
+    fmt::print("{}", json_ ? to_json(report) : summary(report));
+    std::fflush(stdout);
+    end(report, solution);
+  }
+
+ private:
+  SceneSolution solve(const Scene& scene, Clock::time_point start) {
+    static const std::map<std::string, GatherMethod> kSolvers = {{"gauss-seidel", GatherMethod::gauss_seidel},
+                                                                 {"jacobi", GatherMethod::jacobi},
+                                                                 {"krylov", GatherMethod::krylov},
+                                                                 {"direct", GatherMethod::direct}};
+    options_.method = method_ == "shoot" ? Method::shoot : Method::gather;
+    options_.gather_method = kSolvers.at(solver_);
+    options_.max_shots = shots_;
+    options_.memory_limit = memory_limit_ ? static_cast<std::uint64_t>(std::min(*memory_limit_ * 0x1p30, 0x1p63))
+                                          : available_memory_bytes();
+    options_.stop = [this, start] { return interrupted() || (time_limit_ && seconds_since(start) > *time_limit_); };
+    options_.stop_is_a_limit = time_limit_.has_value();
+    ProgressDisplay display;
+    options_.progress = [&](double fraction, std::string_view label) { display.show(fraction, label); };
+    return solve_scene(scene, options_);
+  }
+
+  std::map<std::string, std::string> options_given() const {
+    std::map<std::string, std::string> given;
+    for (const CLI::Option* option : verb_.get_options()) {
+      if (option == verb_.get_help_ptr()) continue;
+      const std::string name = option->get_single_name();
+      given[name] = option->count() > 0 ? CLI::detail::join(option->results(), " ") : option->get_default_str();
+    }
+    return given;
+  }
+
+  void end(const Report& report, const SceneSolution& solution) const {
+    const auto with = [](ExitCode code, const std::string& message) {
+      fmt::print(stderr, "exitance: {}\n", message);
+      throw CLI::RuntimeError(code);
+    };
+    if (solution.stopped) {
+      with(limit_reached,
+           fmt::format("stopped after {} {}; {}", report.iterations, method_ == "shoot" ? "shots" : "iterations",
+                       folder_.empty() ? "the result is partial" : "the partial result was saved"));
+    }
+    if (!report.converged) {
+      with(check_failed, fmt::format("the solver reached an error bound of {:.3g}, not the tolerance of {:.3g}",
+                                     report.solver_error_bound, options_.tolerance));
+    }
+    if (report.closure_max_defect && !(*report.closure_max_defect <= kLargestClosureDefect)) {
+      with(check_failed, fmt::format("the scene is closed, but front and back miss 1 by {:.3g} at some sample point",
+                                     *report.closure_max_defect));
+    }
+  }
+
+  CLI::App& verb_;
+  SceneOptions scene_;
+  SolveOptions options_;
+  std::string method_ = "gather", solver_ = "gauss-seidel", receivers_ = "points", visibility_ = "exact";
+  std::optional<std::uint64_t> shots_;
+  std::optional<double> time_limit_, memory_limit_;
+  std::optional<std::size_t> threads_;
+  std::string folder_;
+  bool json_ = false;
+};
+
+}  // namespace
+
+void add_solve(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("solve", "Solve the radiosity of a scene");
+  verb->callback([solve = std::make_shared<Solve>(*verb)] { solve->run(); });
+}
+
+}  // namespace exitance

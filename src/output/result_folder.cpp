@@ -1,0 +1,42 @@
+#include "src/output/result_folder.h"
+
+#include <unistd.h>
+
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "src/scene/input_error.h"
+
+namespace exitance {
+namespace fs = std::filesystem;
+
+ResultFolder::ResultFolder(fs::path folder)
+    : folder_(std::move(folder)), draft_(folder_ / (".draft." + std::to_string(getpid()))) {
+  std::error_code failed;
+  fs::create_directories(draft_, failed);
+  if (failed) {
+    throw InputError(folder_.string(), 0,
+                     "results cannot be written there (" + failed.message() + "); choose a folder that is writable");
+  }
+}
+
+ResultFolder::~ResultFolder() {
+  std::error_code ignored;
+  fs::remove_all(draft_, ignored);
+  fs::remove(folder_, ignored);  // only if it is empty
+}
+
+void ResultFolder::publish() const {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(draft_)) files.push_back(entry.path());
+  for (const fs::path& file : files) {
+    std::error_code failed;
+    fs::rename(file, folder_ / file.filename(), failed);
+    if (failed)
+      throw InputError((folder_ / file.filename()).string(), 0, "cannot be replaced (" + failed.message() + ")");
+  }
+}
+
+}  // namespace exitance

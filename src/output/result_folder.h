@@ -1,0 +1,28 @@
+#pragma once
+// A folder of results that belong together.
+
+#include <filesystem>
+
+namespace exitance {
+
+/// Results are written into a draft folder within the folder and moved out of it, replacing earlier ones, when all are
+/// there. What is not published is removed, and so is a folder that was made for nothing.
+class ResultFolder {
+ public:
+  /// Makes the folder (and its parents) and the draft in it, so that a long piece of work fails at its start when its
+  /// results could not be written. Throws InputError.
+  explicit ResultFolder(std::filesystem::path folder);
+  ~ResultFolder();
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+
+  const std::filesystem::path& draft() const { return draft_; }
+
+  /// Moves every file of the draft into the folder. Throws InputError when the system refuses.
+  void publish() const;
+
+ private:
+  std::filesystem::path folder_, draft_;
+};
+
+}  // namespace exitance

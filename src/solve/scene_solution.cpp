@@ -1,0 +1,231 @@
+#include "src/solve/scene_solution.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <random>
+
+#include "src/scene/input_error.h"
+#include "src/scene/scene_check.h"
+#include "src/solve/error_bound.h"
+#include "src/solve/shoot.h"
+
+namespace exitance {
+namespace {
+
+class Stopwatch {
+ public:
+  /// Seconds since the last lap.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Discretisation discretise(const Scene& scene, const PatchMesh& mesh) {
+  Discretisation d;
+  d.bands = scene.bands;
+  for (const Patch& patch : mesh.patches) {
+    d.element_first.push_back(patch.element_first + patch.element_count);
+    const Material& material = scene.materials[scene.surfaces[patch.surface].material];
+    d.rho.insert(d.rho.end(), material.rho.begin(), material.rho.end());
+    d.E.insert(d.E.end(), material.E.begin(), material.E.end());
+  }
+  for (const Element& element : mesh.elements) d.element_area.push_back(element.area);
+  return d;
+}
+
+// Means over the elements of each patch, weighted by area.
+std::vector<double> patch_means(const Discretisation& d, std::span<const double> of_element) {
+  std::vector<double> means(d.patches());
+  for (std::size_t p = 0; p < means.size(); ++p) {
+    double area = 0;
+    for (std::size_t e = d.element_first[p]; e < d.element_first[p + 1]; ++e) {
+      means[p] += d.element_area[e] * of_element[e];
+      area += d.element_area[e];
+    }
+    means[p] /= area;
+  }
+  return means;
+}
+
+class SceneSolver {
+ public:
+  SceneSolver(const Scene& scene, const SolveOptions& options) : options_(options), result_(make_soup(scene)) {
+    result_.mesh = make_patch_mesh(scene, result_.soup, options.mesh);
+    if (result_.mesh.patches.empty())
+      throw InputError(scene.name, 0, "no surface has an area; there is nothing to solve");
+    result_.discretisation = discretise(scene, result_.mesh);
+    check(result_.discretisation);
+    result_.closed = is_closed(scene);
+  }
+
+  SceneSolution solve() && {
+    if (options_.method == Method::gather) {
+      refuse_too_large_a_matrix();
+      gather_all();
+    } else if (!options_.max_shots && !options_.stop_is_a_limit && matrix_bytes_needed() <= options_.memory_limit) {
+      shoot_with_matrix();
+    } else {
+      shoot_without_matrix();
+    }
+    measure_energy_balance();
+    if (!stopped()) measure_reciprocity();
+    return std::move(result_);
+  }
+
+ private:
+  // What is held at the same time: rows of elements while they grow, then those and the patches' or their transpose.
+  std::uint64_t matrix_bytes_needed() const {
+    const std::uint64_t elements = result_.mesh.elements.size(), patches = result_.mesh.patches.size();
+    const auto needed = [&](double density) {
+      const double rows = static_cast<double>(matrix_bytes(elements, patches, density));
+      const double beside =
+          options_.method == Method::gather ? static_cast<double>(matrix_bytes(patches, patches, density)) : rows;
+      return static_cast<std::uint64_t>(std::min(2 * rows + beside, 0x1p63));
+    };
+    // Looking at some rows takes time that small scenes need not spend.
+    if (needed(1) <= options_.memory_limit) return needed(1);
+    return needed(expected_row_length(result_.mesh, result_.soup) / static_cast<double>(patches));
+  }
+
+  void refuse_too_large_a_matrix() const {
+    const std::uint64_t needed = matrix_bytes_needed();
+    if (needed <= options_.memory_limit) return;
+    throw LimitError(
+        fmt::format("the form factors of {} elements to {} patches would take about {:.3g} GiB of memory and {:.3g} "
+                    "GiB may be used; "
+                    "shooting (--method shoot) needs no matrix",
+                    result_.mesh.elements.size(), result_.mesh.patches.size(), static_cast<double>(needed) * 0x1p-30,
+                    static_cast<double>(options_.memory_limit) * 0x1p-30));
+  }
+
+  bool stopped() const { return options_.stop && options_.stop(); }
+
+  FormFactorMatrix rows() {
+    const auto report = [&](double fraction, std::string_view label) {
+      if (options_.progress) options_.progress(fraction, label);
+      if (fraction < 1 && stopped())
+        throw LimitError("stopped before the form factors were complete; nothing was saved");
+    };
+    PointRows rows = point_rows(result_.mesh, result_.soup, 0, result_.mesh.elements.size(), report);
+    result_.statistics = rows.statistics;
+    result_.measured_points = result_.mesh.elements.size();
+    result_.element_row_sum = row_sums(rows.F);
+    result_.seconds_form_factors = stopwatch_.lap();
+    return std::move(rows.F);
+  }
+
+  void gather_all() {
+    const Discretisation& d = result_.discretisation;
+    const FormFactorMatrix element_rows = rows();
+    const RadiositySystem system = make_system(d, element_rows);
+    result_.patches = gather(system, {.method = options_.gather_method,
+                                      .tolerance = options_.tolerance,
+                                      .progress = options_.progress,
+                                      .stop = options_.stop});
+    result_.element_H = irradiance(element_rows, result_.patches.B, d.bands);
+    result_.element_B = element_exitance(d, result_.element_H);
+    result_.form_factor_error = form_factor_error(system, result_.patches.B);
+    result_.stopped = !result_.patches.converged && stopped();
+    all_columns_known_ = true;
+    result_.seconds_solve = stopwatch_.lap();
+  }
+
+  void shoot_with_matrix() {
+    const FormFactorMatrix columns = transpose(rows());
+    shoot_all(column_of(columns));
+    all_columns_known_ = true;
+    result_.seconds_solve = stopwatch_.lap();
+  }
+
+  void shoot_without_matrix() {
+    const std::size_t n = result_.mesh.elements.size();
+    result_.element_row_sum.assign(n, 0);
+    std::vector<bool> is_known(result_.mesh.patches.size());
+    const auto column = [&](std::size_t patch, std::span<double> F, std::span<double> F_error) {
+      point_column(result_.mesh, result_.soup, patch, F, F_error);
+      if (is_known[patch]) return;
+      is_known[patch] = true;
+      for (std::size_t e = 0; e < n; ++e) result_.element_row_sum[e] += F[e];
+    };
+    shoot_all(column);
+    // What never shot, because it is black, is needed for the energy that escapes.
+    std::vector<double> F(n), F_error(n);
+    for (std::size_t p = 0; p < is_known.size() && !result_.stopped; ++p) {
+      if (!is_known[p]) column(p, F, F_error);
+    }
+    all_columns_known_ = !result_.stopped;
+    if (!stopped()) measure_sample();
+    result_.seconds_solve = stopwatch_.lap();
+  }
+
+  void shoot_all(const ShootColumn& column) {
+    ShootOptions how{.tolerance = options_.tolerance, .progress = options_.progress, .stop = options_.stop};
+    if (options_.max_shots) how.max_shots = *options_.max_shots;
+    ShootSolution solution = shoot(result_.discretisation, column, how);
+    result_.stopped = !solution.patches.converged && (solution.patches.iterations >= how.max_shots || stopped());
+    result_.patches = std::move(solution.patches);
+    result_.element_H = std::move(solution.element_H);
+    result_.element_B = std::move(solution.element_B);
+    result_.form_factor_error = solution.form_factor_error;
+  }
+
+  // Whole rows of some elements, for what columns cannot tell.
+  void measure_sample() {
+    constexpr std::size_t kSample = 256;
+    const std::size_t n = result_.mesh.elements.size(), count = std::min(n, kSample);
+    std::vector<PointRowStatistics> found(count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+      const std::size_t e = n * (2 * k + 1) / (2 * count);
+      found[k] = point_rows(result_.mesh, result_.soup, e, e + 1).statistics;
+    });
+    for (const PointRowStatistics& s : found) result_.statistics += s;
+    result_.measured_points = count;
+  }
+
+  void measure_energy_balance() {
+    if (!all_columns_known_) return;
+    const Discretisation& d = result_.discretisation;
+    result_.energy_balance_defect = energy_balance(patch_areas(d), patch_means(d, result_.element_row_sum), d.rho, d.E,
+                                                   result_.patches.B, result_.patches.H, d.bands)
+                                        .worst_defect;
+  }
+
+  void measure_reciprocity() {
+    constexpr int kPairs = 64, kDraws = 1024;
+    std::mt19937_64 random(options_.seed);
+    const std::size_t n = result_.mesh.patches.size();
+    int pairs = 0;
+    for (int draw = 0; draw < kDraws && pairs < kPairs; ++draw) {
+      const std::size_t i = random() % n, j = random() % n;
+      if (i == j) continue;
+      const double A_i = result_.mesh.patches[i].area, A_j = result_.mesh.patches[j].area;
+      const double F_ij = patch_form_factor(result_.mesh, result_.soup, i, j).F;
+      const double F_ji = patch_form_factor(result_.mesh, result_.soup, j, i).F;
+      if (F_ij == 0 && F_ji == 0) continue;
+      ++pairs;
+      const double defect = std::fabs(A_i * F_ij - A_j * F_ji) / std::min(A_i, A_j);
+      result_.reciprocity_max_defect = std::max(result_.reciprocity_max_defect.value_or(0), defect);
+    }
+  }
+
+  const SolveOptions& options_;
+  Stopwatch stopwatch_;
+  SceneSolution result_;
+  bool all_columns_known_ = false;
+};
+
+}  // namespace
+
+SceneSolution solve_scene(const Scene& scene, const SolveOptions& options) {
+  return SceneSolver(scene, options).solve();
+}
+
+}  // namespace exitance

@@ -1,0 +1,76 @@
+#pragma once
+// From a scene to its radiosity: mesh, form factors, solution, and the numbers that tell how good it is.
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "geometry/polygon_soup.h"
+#include "src/form_factor/point_rows.h"
+#include "src/output/progress.h"
+#include "src/scene/patch_mesh.h"
+#include "src/scene/scene.h"
+#include "src/solve/gather.h"
+#include "src/solve/radiosity_system.h"
+
+namespace exitance {
+
+enum class Method : std::uint8_t {
+  gather,  ///< the whole matrix, then its system (gather.h)
+  shoot    ///< progressive refinement (shoot.h)
+};
+
+struct SolveOptions {
+  Method method = Method::gather;
+  GatherMethod gather_method = GatherMethod::gauss_seidel;
+  MeshOptions mesh;
+  double tolerance = 1e-12;  ///< of the solver: bound of B's error relative to max B; > 0
+  /// Most memory that form factors may take [bytes]. Gathering needs all of them. Shooting keeps them where they fit
+  /// and no limit of its work was asked for, and computes each column when it is shot otherwise.
+  std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();
+  std::optional<std::uint64_t> max_shots;
+  /// Asked often, from the thread that called: true ends the work. May be empty.
+  std::function<bool()> stop;
+  bool stop_is_a_limit =
+      false;               ///< whether `stop` is meant to end the work in time, so that shooting should begin at once
+  std::uint64_t seed = 1;  ///< of the pairs whose reciprocity is measured
+  Progress progress;
+};
+
+struct SceneSolution {
+  explicit SceneSolution(PolygonSoup of_scene) : soup(std::move(of_scene)) {}
+
+  PolygonSoup soup;
+  PatchMesh mesh;
+  Discretisation discretisation;
+  bool closed = false;  ///< whether the scene's surfaces bound a volume (is_closed)
+
+  Solution patches;
+  std::vector<double> element_H, element_B;  ///< each element and band
+  std::vector<double> element_row_sum;       ///< Σ_q F of each element; of the patches that shot, where `stopped`
+  double form_factor_error = 0;              ///< what errors of form factors add to patches.error_bound
+  bool stopped = false;                      ///< max_shots or `stop` ended the work before the tolerance was reached
+
+  /// Of `measured_points` elements: all of them, or a sample spread evenly where there is no matrix.
+  PointRowStatistics statistics;
+  std::uint64_t measured_points = 0;
+  /// Relative, worst band (error_bound.h). None where stopped before all columns were known.
+  std::optional<double> energy_balance_defect;
+  /// max |A_i F_ij − A_j F_ji| / min(A_i, A_j) of up to 64 random pairs that see each other, each F integrated anew
+  /// over its own receiver. With sample points as receivers this shows the error of that quadrature, not of visibility.
+  /// None where no such pair was found, or time was up.
+  std::optional<double> reciprocity_max_defect;
+
+  double seconds_form_factors = 0, seconds_solve = 0;  ///< wall clock; shooting without a matrix is all `solve`
+};
+
+/// Solves the scene. The same bits for any number of threads. REQUIRES: a scene as read_scene returns it.
+/// Throws InputError for a scene in which no surface has an area, LimitError when the form factors of gathering would
+/// not fit in memory_limit (the message tells how much they need) and when `stop` ends the work before there is any
+/// solution, InvalidSystem when form factors or materials are out of range, std::invalid_argument for options that are.
+SceneSolution solve_scene(const Scene& scene, const SolveOptions& options = {});
+
+}  // namespace exitance

@@ -1,0 +1,42 @@
+#pragma once
+// Runs the built program as a user would.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/output/scratch_folder.h"
+
+namespace exitance {
+
+struct Outcome {
+  int code = -1;  ///< exit code; −1 when a signal ended the program
+  std::string out, err;
+
+  bool one_line_on_stderr() const {
+    return std::ranges::count(err, '\n') == 1 && err.back() == '\n' && err.starts_with("exitance: ");
+  }
+};
+
+/// before: what stands before the program on the command line.
+inline Outcome run(const std::string& arguments, const std::string& before = "") {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string(), err = (scratch / "err").string();
+  const int status =
+      std::system((before + " " EXITANCE_PROGRAM " " + arguments + " >" + out + " 2>" + err + " </dev/null").c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(out), contents(err)};
+}
+
+inline std::string data(const std::string& name) {
+  return EXITANCE_SOURCE_DIR "/data/" + name;
+}
+
+inline nlohmann::json json_in(const std::filesystem::path& file) {
+  return nlohmann::json::parse(contents(file));
+}
+
+}  // namespace exitance

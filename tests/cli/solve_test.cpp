@@ -1,0 +1,153 @@
+// exitance solve: right numbers, and the same ones by every route.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/cli/program.h"
+#include "tests/cli/solution.h"
+
+namespace exitance {
+namespace {
+
+class SolveTest : public testing::Test {
+ protected:
+  /// Solves into scratch/name, expects the exit code and returns result.json.
+  nlohmann::json solve(const std::string& scene, const std::string& options, const std::string& name, int code = 0) {
+    const Outcome outcome = run("solve " + scene + " " + options + " -o " + (scratch / name).string());
+    EXPECT_EQ(outcome.code, code) << outcome.err;
+    return json_in(scratch / name / "result.json");
+  }
+  std::filesystem::path file(const std::string& name, const std::string& what) const { return scratch / name / what; }
+
+  /// Largest difference of B of two solutions, relative to max B.
+  double difference(const std::string& a, const std::string& b) const {
+    const std::vector<double> B_a = vtp_array(file(a, "solution.vtp"), "B"),
+                              B_b = vtp_array(file(b, "solution.vtp"), "B");
+    EXPECT_EQ(B_a.size(), B_b.size());
+    double worst = 0, largest = 0;
+    for (std::size_t i = 0; i < B_a.size(); ++i) {
+      worst = std::max(worst, std::fabs(B_a[i] - B_b[i]));
+      largest = std::max(largest, std::fabs(B_a[i]));
+    }
+    return worst / largest;
+  }
+
+  const ScratchFolder scratch;
+};
+
+TEST_F(SolveTest, FurnaceIsTwoOnEveryElement) {
+  const auto result = solve(data("furnace_cube.toml"), "--patch-size 0.25 --elements 2", "furnace");
+  EXPECT_EQ(result.at("patches"), 96);
+  EXPECT_EQ(result.at("elements"), 384);
+  const std::vector<double> B = vtp_array(file("furnace", "solution.vtp"), "B");
+  EXPECT_EQ(B.size(), 384u);
+  EXPECT_THAT(B, testing::Each(testing::DoubleNear(2, 1e-12)));
+  EXPECT_LT(result.at("closure_max_defect"), 1e-14);
+  EXPECT_LT(result.at("energy_balance_defect"), 1e-12);
+  // Sixteen squares of each wall see all others and none of their own wall.
+  EXPECT_EQ(result.at("pairs").at("open"), 384 * 80);
+  EXPECT_EQ(result.at("pairs").at("facing_away"), 384 * 16);
+}
+
+TEST_F(SolveTest, ClosedCornellBoxIsClosed) {
+  const auto result = solve(data("cornell_box_closed.toml"), "--patch-size 0.15", "box");
+  EXPECT_LT(result.at("closure_max_defect"), 1e-12);
+  EXPECT_TRUE(result.at("converged"));
+  EXPECT_LT(result.at("error_bound"), 1e-11);
+  EXPECT_GT(result.at("covered_points"), 0);  // beneath the blocks
+  EXPECT_EQ(result.at("measured_points"), result.at("elements"));
+  EXPECT_EQ(result.at("warnings").size(), 0u);
+}
+
+TEST_F(SolveTest, OpenCornellBoxLetsLightEscape) {
+  const auto open = solve(data("cornell_box.toml"), "--patch-size 0.2", "open");
+  const auto closed = solve(data("cornell_box_closed.toml"), "--patch-size 0.2", "closed");
+  EXPECT_TRUE(open.at("closure_max_defect").is_null());
+  EXPECT_LT(open.at("B_max"), closed.at("B_max"));
+  // Escaped energy is computed by itself; with sample points the balance shows their quadrature, not more.
+  EXPECT_LT(open.at("energy_balance_defect"), 0.05);
+  EXPECT_LT(closed.at("energy_balance_defect"), 0.05);
+}
+
+TEST_F(SolveTest, EveryMethodReachesTheSameAnswer) {
+  const std::string scene = data("box_on_floor.toml"), size = "--patch-size 0.6 ";
+  const double bound = solve(scene, size, "gather").at("solver_error_bound");
+  EXPECT_LE(bound, 1e-12);
+  for (const char* method : {"--solver jacobi", "--solver krylov", "--solver direct", "--method shoot",
+                             "--method shoot --memory-limit 1e-9"}) {
+    const double other = solve(scene, size + method, "other").at("solver_error_bound");
+    EXPECT_LE(other, 1e-12) << method;
+    EXPECT_LE(difference("gather", "other"), bound + other) << method;
+  }
+}
+
+TEST_F(SolveTest, AnyNumberOfThreadsGivesTheSameBits) {
+  for (const char* method : {"gather", "shoot", "shoot --memory-limit 1e-9"}) {
+    const std::string options = std::string("--patch-size 0.2 --method ") + method + " --threads ";
+    auto one = solve(data("cornell_box_closed.toml"), options + "1", "one");
+    auto two = solve(data("cornell_box_closed.toml"), options + "2", "two");
+    for (const char* varies : {"seconds", "peak_memory_bytes", "manifest"}) {
+      one.erase(varies);
+      two.erase(varies);
+    }
+    EXPECT_EQ(one, two) << method;
+    for (const char* name : {"solution.vtp", "solution.ply", "image.png"}) {
+      EXPECT_EQ(contents(file("one", name)), contents(file("two", name))) << method << " " << name;
+    }
+  }
+}
+
+TEST_F(SolveTest, RefusesAMatrixThatDoesNotFit) {
+  const Outcome outcome = run("solve " + data("furnace_cube.toml") + " --patch-size 0.1 --memory-limit 0.001 -o " +
+                              (scratch / "big").string());
+  EXPECT_EQ(outcome.code, 4);
+  EXPECT_TRUE(outcome.one_line_on_stderr()) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::AllOf(testing::HasSubstr("600 elements"), testing::HasSubstr("0.001 GiB"),
+                                          testing::HasSubstr("--method shoot")));
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(scratch.files(), 0u);
+}
+
+TEST_F(SolveTest, SavesWhatALimitOfShotsLeaves) {
+  const auto result = solve(data("cornell_box_closed.toml"), "--patch-size 0.3 --method shoot --shots 3", "part", 4);
+  EXPECT_FALSE(result.at("converged"));
+  EXPECT_EQ(result.at("iterations"), 3);
+  EXPECT_TRUE(result.at("energy_balance_defect").is_null());
+  EXPECT_LT(result.at("closure_max_defect"), 1e-12);
+  for (const char* name : {"solution.vtp", "solution.ply", "image.png"}) EXPECT_TRUE(exists(file("part", name)));
+  // The bound is honest: the whole solution lies within it.
+  solve(data("cornell_box_closed.toml"), "--patch-size 0.3", "whole");
+  EXPECT_LE(difference("part", "whole"), result.at("error_bound"));
+}
+
+TEST_F(SolveTest, SavesWhatIsThereWhenTimeIsUpOrInterrupted) {
+  const auto timed = solve(data("furnace_cube.toml"), "--method shoot --time-limit 1e-6", "timed", 4);
+  EXPECT_EQ(timed.at("iterations"), 0);
+  const std::string room = (scratch / "room.obj").string();
+  ASSERT_EQ(run("generate furnished-room --polygons 4000 -o " + room).code, 0);
+  const std::string solve_room =
+      "solve " + room + " --method shoot --memory-limit 1e-9 -o " + (scratch / "room").string();
+  const Outcome interrupted = run(solve_room, "timeout --preserve-status -s INT 1");
+  EXPECT_EQ(interrupted.code, 4) << interrupted.err;
+  EXPECT_FALSE(json_in(file("room", "result.json")).at("converged"));
+}
+
+TEST_F(SolveTest, PrintsNothingButResults) {
+  const Outcome json = run("solve " + data("furnace_cube.toml") + " --json");
+  EXPECT_EQ(json.code, 0);
+  EXPECT_EQ(json.err, "");
+  EXPECT_NEAR(nlohmann::json::parse(json.out).at("B_max"), 2, 1e-12);
+  const Outcome words = run("solve " + data("furnace_cube.toml"));
+  EXPECT_THAT(words.out, testing::HasSubstr("closure defect"));
+  EXPECT_EQ(words.err, "");
+}
+
+TEST_F(SolveTest, FailsTheCheckWhenTheToleranceIsOutOfReach) {
+  const auto result = solve(data("furnace_cube.toml"), "--tolerance 1e-30", "furnace", 1);
+  EXPECT_FALSE(result.at("converged"));
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,60 @@
+#include "src/output/result_folder.h"
+
+#include <gtest/gtest.h>
+
+#include "src/scene/input_error.h"
+#include "tests/output/scratch_folder.h"
+
+namespace exitance {
+namespace {
+
+void write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path) << text;
+}
+
+TEST(ResultFolder, PublishesAllAndLeavesNoDraft) {
+  const ScratchFolder scratch;
+  const auto folder = scratch / "new";
+  {
+    const ResultFolder results(folder);
+    write(results.draft() / "a", "1");
+    write(results.draft() / "b", "2");
+    EXPECT_FALSE(exists(folder / "a"));
+    results.publish();
+  }
+  EXPECT_EQ(contents(folder / "a"), "1");
+  EXPECT_EQ(contents(folder / "b"), "2");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 2);
+}
+
+TEST(ResultFolder, KeepsEarlierResultsUntilPublished) {
+  const ScratchFolder scratch;
+  write(scratch / "a", "earlier");
+  {
+    const ResultFolder results(scratch / "");
+    write(results.draft() / "a", "later");
+  }
+  EXPECT_EQ(contents(scratch / "a"), "earlier");
+  EXPECT_EQ(scratch.files(), 1u);
+  {
+    const ResultFolder results(scratch / "");
+    write(results.draft() / "a", "later");
+    results.publish();
+  }
+  EXPECT_EQ(contents(scratch / "a"), "later");
+}
+
+TEST(ResultFolder, LeavesNoFolderThatWasMadeForNothing) {
+  const ScratchFolder scratch;
+  { const ResultFolder results(scratch / "new"); }
+  EXPECT_EQ(scratch.files(), 0u);
+}
+
+TEST(ResultFolder, RefusesAFileInItsPlace) {
+  const ScratchFolder scratch;
+  write(scratch / "a", "");
+  EXPECT_THROW(ResultFolder(scratch / "a"), InputError);
+}
+
+}  // namespace
+}  // namespace exitance
