@@ -152,10 +152,9 @@ Signed<Real> value_at(const ConeSide<Real>& side, const ConeCorner<Real>& corner
 }
 
 /// Narrows the stretch to where the linear function from a (at 0) to b (at 1) is positive. Both zero is the caller's case.
-/// refine(): called when the crossing is ill-conditioned, to make a and b more exact. sweep: how much of an angle an error of
-/// the parameter costs.
+/// refine(): called to make a and b more exact when the error of the crossing exceeds `bearable`.
 template <class Real, class Refine>
-void narrow(Stretch<Real>& stretch, Signed<Real>& a, Signed<Real>& b, const Real& sweep, const Refine& refine) {
+void narrow(Stretch<Real>& stretch, Signed<Real>& a, Signed<Real>& b, const Real& bearable, const Refine& refine) {
   using std::fabs;
   if (a.sign <= 0 && b.sign <= 0) {
     stretch.empty = true;
@@ -169,7 +168,7 @@ void narrow(Stretch<Real>& stretch, Signed<Real>& a, Signed<Real>& b, const Real
                  : Real(1);
     };
     Real error = error_of_crossing();
-    if (error * sweep > 64 * roundoff<Real>() || error > 0x1p-20) {
+    if (error > bearable) {
       refine();
       error = error_of_crossing();
     }
@@ -221,7 +220,7 @@ void clip(Cone<Real>& cone, const std::vector<Signed<Real>>& weight, ViewPoint::
     const Signed<Real>&a = weight[side.from], &b = weight[side.to];
     if (a.sign * b.sign < 0) {
       Signed<Real> from = a, to = b;
-      narrow(side.stretch, from, to, side.sweep, [] {});
+      narrow(side.stretch, from, to, Real(1), [] {});
       const std::uint32_t point = crossing(side, side.stretch, inside ? side.stretch.hi : side.stretch.lo);
       if (!inside) close(exit, point);
       exit = point;

@@ -175,8 +175,11 @@ void PolygonSoup::find_shells() {
     shell.convex = true;
     for (const auto f : shell.facets) {
       facets_[f].shell = static_cast<std::uint32_t>(shells_.size());
-      for (const Corner& c : corners(facets_[f])) {
+      const auto loop = corners(facets_[f]);
+      for (std::size_t k = 0; k < loop.size(); ++k) {
+        const Corner& c = loop[k];
         shell.vertices.push_back(c.vertex);
+        if (f < c.neighbour) shell.edges.push_back({c.vertex, loop[(k + 1) % loop.size()].vertex, f, c.neighbour});
         // Convex along every edge, a closed surface that does not intersect itself is convex as a whole (Tietze–Nakajima).
         for (const Corner& n : corners(facets_[c.neighbour])) {
           shell.convex = shell.convex && side_of(facets_[f].plane, vertices_[n.vertex], counts) <= 0;

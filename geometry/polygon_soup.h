@@ -50,11 +50,17 @@ struct Corner {
   std::uint32_t neighbour = kNone;  ///< the one facet across the edge from this corner to the next; kNone: none, or several
 };
 
+/// An edge of a shell: from – to runs counter-clockwise around facet `left`, clockwise around `right`.
+struct ShellEdge {
+  std::uint32_t from, to, left, right;
+};
+
 /// Facets that bound a solid, facing out.
 struct Shell {
   Box box;
   bool convex = false;  ///< exactly, along every edge
   std::vector<std::uint32_t> facets, vertices;  ///< each once, ascending
+  std::vector<ShellEdge> edges;                 ///< each once
 };
 
 class PolygonSoup {

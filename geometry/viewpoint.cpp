@@ -252,6 +252,7 @@ bool Viewpoint::covered() const { return state_->covered; }
 
 PointFormFactor Viewpoint::form_factor(const Source& source, double tolerance) {
   State& s = *state_;
+  s.region.set_bearable_angle(std::max(0x1p-46, tolerance / 16));
   PointFormFactor result;
   int source_facing = 0;
   const bool above = s.prepare(source, source_facing);

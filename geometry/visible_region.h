@@ -17,7 +17,7 @@
 #include <algorithm>
 #include <deque>
 #include <span>
-#include <unordered_map>
+#include <utility>
 
 #include "geometry/chart.h"
 #include "geometry/cone.h"
@@ -52,6 +52,9 @@ class VisibleRegion {
   /// plane. Its corners run counter-clockwise seen from the facet's front; `horizon`: the sign of each against the
   /// receiver's horizon. False when no part of it is above the horizon.
   bool set_source(std::uint32_t facet, int facing, Corners corners, std::span<const int> horizon);
+
+  /// How wrong [rad] the end of an arc may be before exact arithmetic is asked; at first 2^-46.
+  void set_bearable_angle(double angle) { bearable_angle_ = angle; }
 
   enum class Effect { none, part, whole };
 
@@ -121,6 +124,7 @@ class VisibleRegion {
   std::uint32_t source_facet_ = kNone;
   const Plane* source_plane_ = nullptr;
   int facing_source_ = 1;
+  double bearable_angle_ = 0x1p-46;
   Cone<Real> source_;
   std::deque<Added> added_;  // count_ of them in use; they may point into themselves
   std::size_t count_ = 0;
@@ -129,6 +133,7 @@ class VisibleRegion {
   std::vector<Signed<Real>> row_, weight_;
   std::vector<Stretch<Real>> within_;
   std::vector<const Vec3*> corners_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ring_;
   Chart chart_;
 
   // Cones of the current view, kept because every occluder is met on the way to many sources.
@@ -239,7 +244,7 @@ void VisibleRegion<Real>::fill_row(const ConeSide<Real>& side, const Cone<Real>&
 template <class Real>
 void VisibleRegion<Real>::narrow_along(Stretch<Real>& stretch, const Cone<Real>& cone, const ConeSide<Real>& edge,
                                        const ConeSide<Real>& side) {
-  narrow(stretch, row_[edge.from], row_[edge.to], edge.sweep, [&] {
+  narrow(stretch, row_[edge.from], row_[edge.to], Real(bearable_angle_ / (edge.sweep + bearable_angle_ * 0x1p20)), [&] {
     if constexpr (!std::is_same_v<Real, double>) return;
     for (const std::uint32_t k : {edge.from, edge.to}) {
       row_[k] = refined_value_at(side, cone.corners[k], frame_, view_.counts());
@@ -302,26 +307,22 @@ const Cone<Real>& VisibleRegion<Real>::cone_of_shell(std::uint32_t shell) {
   bool is_new = false;
   Cone<Real>& cone = *cached(static_cast<std::uint32_t>(soup_.facets().size()) + shell, is_new);
   if (!is_new) return cone;
-  std::unordered_map<std::uint32_t, std::uint32_t> next;
-  std::uint32_t start = kNone;
-  for (const std::uint32_t f : soup_.shells()[shell].facets) {
-    if (view_.facing(f) <= 0) continue;
-    const auto loop = soup_.corners(soup_.facets()[f]);
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      if (view_.facing(loop[k].neighbour) > 0) continue;
-      next[loop[k].vertex] = loop[(k + 1) % loop.size()].vertex;
-      start = std::min(start, loop[k].vertex);
-    }
+  ring_.clear();
+  for (const ShellEdge& edge : soup_.shells()[shell].edges) {
+    const bool left = view_.facing(edge.left) > 0, right = view_.facing(edge.right) > 0;
+    if (left != right) ring_.push_back(left ? std::pair(edge.from, edge.to) : std::pair(edge.to, edge.from));
+  }
+  // The edges form one ring: each in turn gets behind it the one that starts where it ends.
+  for (std::size_t k = 0; k + 1 < ring_.size(); ++k) {
+    const auto next = std::find_if(ring_.begin() + static_cast<std::ptrdiff_t>(k) + 1, ring_.end(),
+                                   [&](const auto& e) { return e.first == ring_[k].second; });
+    if (next != ring_.end()) std::swap(ring_[k + 1], *next);
   }
   corners_.clear();
-  std::vector<std::uint32_t> ring;
-  for (std::uint32_t v = start; ring.size() < next.size(); v = next[v]) {
-    ring.push_back(v);
-    corners_.push_back(&soup_.vertices()[v]);
-  }
+  for (const auto& edge : ring_) corners_.push_back(&soup_.vertices()[edge.first]);
   set_cone(cone, corners_, -1, false);
-  for (std::size_t k = 0; k < ring.size(); ++k) {
-    cone.sides[k].below_horizon = view_.horizon(ring[k]) <= 0 && view_.horizon(ring[(k + 1) % ring.size()]) <= 0;
+  for (std::size_t k = 0; k < ring_.size(); ++k) {
+    cone.sides[k].below_horizon = view_.horizon(ring_[k].first) <= 0 && view_.horizon(ring_[k].second) <= 0;
   }
   drop_below_horizon(cone);
   return cone;

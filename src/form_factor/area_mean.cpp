@@ -6,8 +6,11 @@
 namespace exitance {
 namespace {
 
+/// What the difference of two rules is multiplied by to make an error: it is no bound where the integrand is not smooth,
+/// and less so where an event is known to be.
+constexpr double kSafety = 2, kUncutSafety = 8;
 /// What a cell with uncut events may hide from its sample points, as a share of the unobstructed value.
-constexpr double kUnnoticed = 1e-3;
+constexpr double kUnnoticed = 4e-3;
 /// Proven error of a point's value beyond which extended precision is asked: this, or what the cell's share of the
 /// tolerance allows. Cells near a contact are tiny, and there double precision proves little.
 constexpr double kPointTolerance = 1e-13, kCellShare = 1e-3;
@@ -67,7 +70,7 @@ void AreaMean::measure(AreaViews& views, Cell& cell, double tolerance) {
   cell.integral = rule(views, cell, static_cast<int>(cell.order), tolerance, cell.point_error);
   // Rounding: of each weight and product, and of the sum of up to 64 of them.
   cell.point_error += 80 * kRoundoff * cell.integral;
-  cell.error = std::fabs(cell.integral - coarse);
+  cell.error = (cell.uncut.empty() ? kSafety : kUncutSafety) * std::fabs(cell.integral - coarse);
   if (!cell.uncut.empty()) {
     const auto loop = cell.shape.loop();
     const Vec3 middle = 0.25 * (cell.shape.corner[0] + cell.shape.corner[1] + cell.shape.corner[2] +

@@ -11,7 +11,8 @@ namespace {
 constexpr std::size_t kOccluderEvents = 4000;
 
 struct Edge {
-  std::uint32_t from, to;
+  std::uint32_t from, to;      ///< from < to
+  std::uint32_t facet, other;  ///< on either side of it; kNone: nothing, or several
   friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
@@ -27,7 +28,9 @@ struct Outline {
       vertices.push_back(c[k].vertex);
       const std::uint32_t next = c[(k + 1) % c.size()].vertex;
       if (c[k].neighbour != kNone && soup.facets()[c[k].neighbour].polygon == f.polygon) continue;
-      edges.push_back({std::min(c[k].vertex, next), std::max(c[k].vertex, next)});
+      const std::uint32_t n = c[k].neighbour;
+      edges.push_back(
+          {std::min(c[k].vertex, next), std::max(c[k].vertex, next), std::min(facet, n), std::max(facet, n)});
     }
   }
   void finish() {
@@ -74,11 +77,13 @@ class EventCollector {
     }
   }
 
-  /// A vertex in line with an edge, seen from beyond the vertex or from beyond the edge.
+  /// A vertex in line with an edge, seen from beyond the vertex or from beyond the edge. Only an outline's edge counts:
+  /// the surfaces that meet in it lie on one side of the plane.
   void vertex_edge(std::uint32_t v, const Edge& e, bool beyond_vertex) {
     if (v == e.from || v == e.to) return;
     const Vec3 &p = at(v), c = at(e.from) - p, d = at(e.to) - p;
     const Vec3 n = cross(c, d);
+    if (e.other != kNone && side_of_facet(e.facet, n, p) * side_of_facet(e.other, n, p) < 0) return;
     const double sign = beyond_vertex ? -1 : 1;
     keep({{n, p}, {sign * cross(n, c), -sign * cross(n, d)}});
   }
@@ -87,6 +92,18 @@ class EventCollector {
 
  private:
   const Vec3& at(std::uint32_t vertex) const { return soup_.vertices()[vertex]; }
+
+  /// Of a facet on one side of a plane through p, 0 when it lies in it up to rounding.
+  int side_of_facet(std::uint32_t facet, const Vec3& n, const Vec3& p) const {
+    double farthest = 0, distance = 0;
+    for (const Corner& c : soup_.corners(soup_.facets()[facet])) {
+      const Vec3 w = at(c.vertex) - p;
+      const double d = dot(n, w);
+      if (std::fabs(d) > std::fabs(farthest)) farthest = d;
+      distance = std::max(distance, norm(w));
+    }
+    return std::fabs(farthest) <= 1e-12 * norm(n) * distance ? 0 : farthest > 0 ? 1 : -1;
+  }
 
   void keep(const VisualEvent& event) {
     if (std::any_of(cells_.begin(), cells_.end(), [&](const AreaCell& c) { return event.concerns(c); })) {
