@@ -205,12 +205,13 @@ void PolygonSoup::find_coplanar() {
     const Plane& plane = facets_[f].plane;
     for (const auto t : near) {
       if (t == f || roles_[facets_[t].polygon] == Role::unoccluding) continue;
-      // A polygon that is planar but for the rounding of its vertices is planar: its facets could see less than 2^-80 of each
-      // other, and from a rounded point on one of them the side of the others that is seen would be chance.
-      const double rounding = facets_[t].polygon == facets_[f].polygon ? 0x1p-44 * extent_ * norm(plane.normal) : 0;
+      // Facets of a polygon that is planar but for rounding are in one plane by identity.
+      const double flat = facets_[t].polygon == facets_[f].polygon
+                              ? 0x1p-40 * norm(boxes[f].upper - boxes[f].lower) * norm(plane.normal)
+                              : 0;
       const auto in_plane = [&](const Corner& c) {
         const Vec3& v = vertices_[c.vertex];
-        return std::fabs(dot(plane.normal, v - plane.origin)) < rounding || side_of(plane, v, counts) == 0;
+        return std::fabs(dot(plane.normal, v - plane.origin)) < flat || side_of(plane, v, counts) == 0;
       };
       const auto c = corners(facets_[t]);
       if (std::all_of(c.begin(), c.end(), in_plane)) coplanar_.push_back(t);

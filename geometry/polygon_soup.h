@@ -81,8 +81,8 @@ class PolygonSoup {
   /// back face: back faces hide nothing that front faces do not.
   std::span<const Shell> shells() const { return shells_; }
 
-  /// Other facets that lie exactly in the plane of facet f and touch its box, ascending; of its own polygon also those that
-  /// miss the plane by rounding only.
+  /// Other facets that lie exactly in the plane of facet f, or of the same polygon within rounding (2^-40 of f's size), and
+  /// touch its box, ascending.
   std::span<const std::uint32_t> coplanar(std::uint32_t f) const {
     return {coplanar_.data() + coplanar_first_[f], coplanar_.data() + coplanar_first_[f + 1]};
   }

@@ -159,7 +159,7 @@ ExactValue exact_value_at(const ViewFrame& frame, const ViewPlane& plane, const 
     if ((scaled.inf() > 0 || scaled.sup() < 0) && span.inf() > 0) {
       const Interval value = scaled / span;
       const double middle = 0.5 * (value.inf() + value.sup()), width = value.sup() - value.inf();
-      if (width <= 0x1p-30 * std::fabs(middle)) {
+      if (width <= 0x1p-44 * std::fabs(middle)) {
         ++counts.interval;
         return {plane.sign * middle, width, middle > 0 ? plane.sign : -plane.sign};
       }

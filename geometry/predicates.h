@@ -81,7 +81,7 @@ struct ExactValue {
 };
 
 /// Value of the functional at the point, by interval and, where those are wide, by exact arithmetic (the double filter is
-/// the caller's, who has the values at hand). Relative error at most 2^-30.
+/// the caller's, who has the values at hand). Relative error at most 2^-44.
 ExactValue exact_value_at(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& point, StageCounts& counts);
 
 /// det(b − a, c − a, v − a) for the points of a plane, relative error at most 2^-48.

@@ -114,15 +114,21 @@ std::int32_t SpatialIndex::build(std::span<std::uint32_t> items, std::span<const
   return index;
 }
 
-void SpatialIndex::find(std::span<const HalfSpace> region, std::vector<std::uint32_t>& found) const {
+void SpatialIndex::find(std::span<const HalfSpace> region, const Box& box, std::vector<std::uint32_t>& found) const {
   if (nodes_.empty()) return;
   std::array<std::int32_t, 256> stack;
   std::size_t top = 0;
   stack[top++] = 0;
   while (top > 0) {
     const Node& node = nodes_[static_cast<std::size_t>(stack[--top])];
-    std::array<double, 4> reach;  // < 0: the child's box lies outside of some half-space (NaN, from an empty box: likewise)
-    reach.fill(std::numeric_limits<double>::infinity());
+    // < 0: the child's box lies apart from the box or outside of some half-space. Empty children lie apart.
+    std::array<double, 4> reach;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const bool meets = (node.lower[0][k] <= box.upper.x) & (box.lower.x <= node.upper[0][k]) &
+                         (node.lower[1][k] <= box.upper.y) & (box.lower.y <= node.upper[1][k]) &
+                         (node.lower[2][k] <= box.upper.z) & (box.lower.z <= node.upper[2][k]);
+      reach[k] = meets ? std::numeric_limits<double>::infinity() : -1.0;
+    }
     for (const HalfSpace& h : region) {
       const auto& x = h.normal.x > 0 ? node.upper[0] : node.lower[0];
       const auto& y = h.normal.y > 0 ? node.upper[1] : node.lower[1];
@@ -133,30 +139,7 @@ void SpatialIndex::find(std::span<const HalfSpace> region, std::vector<std::uint
       }
     }
     for (std::size_t k = 0; k < 4; ++k) {
-      if (!(reach[k] >= 0) || node.lower[0][k] > node.upper[0][k]) continue;
-      if (node.child[k] < 0) {
-        found.push_back(static_cast<std::uint32_t>(-1 - node.child[k]));
-      } else {
-        stack[top++] = node.child[k];
-      }
-    }
-  }
-}
-
-void SpatialIndex::find(const Box& box, std::vector<std::uint32_t>& found) const {
-  if (nodes_.empty()) return;
-  std::array<std::int32_t, 256> stack;
-  std::size_t top = 0;
-  stack[top++] = 0;
-  while (top > 0) {
-    const Node& node = nodes_[static_cast<std::size_t>(stack[--top])];
-    for (std::size_t k = 0; k < 4; ++k) {
-      bool meets = true;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        meets = meets && node.lower[axis][k] <= box.upper[static_cast<int>(axis)] &&
-                box.lower[static_cast<int>(axis)] <= node.upper[axis][k];
-      }
-      if (!meets) continue;
+      if (!(reach[k] >= 0)) continue;
       if (node.child[k] < 0) {
         found.push_back(static_cast<std::uint32_t>(-1 - node.child[k]));
       } else {

@@ -1,6 +1,7 @@
 #pragma once
 // A hierarchy of boxes around facets, searched by convex regions and by boxes.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -20,12 +21,12 @@ struct Box {
              -std::numeric_limits<double>::infinity()};
 
   void extend(const Vec3& p) {
-    lower = {std::fmin(lower.x, p.x), std::fmin(lower.y, p.y), std::fmin(lower.z, p.z)};
-    upper = {std::fmax(upper.x, p.x), std::fmax(upper.y, p.y), std::fmax(upper.z, p.z)};
+    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y), std::min(lower.z, p.z)};
+    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y), std::max(upper.z, p.z)};
   }
   void extend(const Box& b) {
-    extend(b.lower);
-    extend(b.upper);
+    lower = {std::min(lower.x, b.lower.x), std::min(lower.y, b.lower.y), std::min(lower.z, b.lower.z)};
+    upper = {std::max(upper.x, b.upper.x), std::max(upper.y, b.upper.y), std::max(upper.z, b.upper.z)};
   }
   /// Whether p is inside or on the boundary of the box grown by `margin` on every side.
   bool contains(const Vec3& p, double margin = 0) const {
@@ -52,11 +53,11 @@ class SpatialIndex {
   SpatialIndex() = default;
   explicit SpatialIndex(std::span<const Box> boxes);
 
-  /// Appends to `found` every item whose box reaches into each of the half-spaces.
-  void find(std::span<const HalfSpace> region, std::vector<std::uint32_t>& found) const;
+  /// Appends to `found` every item whose box reaches into each of the half-spaces and touches or overlaps the box.
+  void find(std::span<const HalfSpace> region, const Box& box, std::vector<std::uint32_t>& found) const;
 
   /// Appends to `found` every item whose box touches or overlaps the box.
-  void find(const Box& box, std::vector<std::uint32_t>& found) const;
+  void find(const Box& box, std::vector<std::uint32_t>& found) const { find({}, box, found); }
 
   /// Around everything; empty for no boxes.
   const Box& bounds() const { return bounds_; }

@@ -18,6 +18,8 @@ using Extended = boost::multiprecision::number<
 }  // namespace
 
 struct Viewpoint::State {
+  static constexpr std::size_t kRecentBlockers = 4;
+
   /// What stands between the point and a facet, kept while pieces of the same facet are asked about.
   struct Candidates {
     std::uint32_t facet = kNone;
@@ -34,6 +36,7 @@ struct Viewpoint::State {
     return region_of<Real>().set_source(facet, source_facing, corners, horizons);
   }
   bool add_candidate(const Occluder& occluder);
+  bool hidden_by_recent();
   bool find_candidates(std::uint32_t facet);
   bool prepare(const Source& source, int& source_facing);
   bool put_occluders(const Source& source, int source_facing);
@@ -50,6 +53,7 @@ struct Viewpoint::State {
   VisibleRegion<double> region;
   VisibleRegion<Extended> fine;
   std::array<Candidates, 4> recent;  // the facets of a polygon take turns
+  std::vector<Occluder> blockers;    // of this view, the latest first
   std::vector<const Vec3*> corners;
   std::vector<int> horizons;
   std::vector<HalfSpace> half_spaces;
@@ -71,11 +75,37 @@ bool Viewpoint::State::add_candidate(const Occluder& occluder) {
   Candidates& candidates = candidates_of(region.source_facet());
   if (effect != VisibleRegion<double>::Effect::none) candidates.occluders.push_back(occluder);
   candidates.blocked = effect == VisibleRegion<double>::Effect::whole;
+  if (candidates.blocked) {
+    if (blockers.size() == kRecentBlockers) blockers.pop_back();
+    blockers.insert(blockers.begin(), occluder);
+  }
   return !candidates.blocked;
+}
+
+/// Whether one of the occluders that hid the last hidden sources hides all of the current source, too. They are likely to
+/// when sources that follow each other lie close together.
+bool Viewpoint::State::hidden_by_recent() {
+  for (std::size_t k = 0; k < blockers.size(); ++k) {
+    const Occluder blocker = blockers[k];
+    if (blocker.shell != kNone &&
+        region.place_of(soup.shells()[blocker.shell]) != VisibleRegion<double>::Place::in_front) {
+      continue;
+    }
+    if (region.hides(blocker)) {
+      std::rotate(blockers.begin(), blockers.begin() + static_cast<std::ptrdiff_t>(k),
+                  blockers.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+      return true;
+    }
+  }
+  return false;
 }
 
 /// Looks for everything that hides something of the current source from the point; false when all of it is hidden.
 bool Viewpoint::State::find_candidates(std::uint32_t facet) {
+  if (hidden_by_recent()) {
+    candidates_of(facet).blocked = true;
+    return false;
+  }
   // Half-spaces that hold all that can lie between: the source's cone and the near side of its plane. |v − x| and |v| are at
   // most `reach` within the scene; each offset is lowered by the errors of the normal and of both products.
   const double reach = 4 * std::fmax(soup.extent(), std::fmax(std::fabs(view.receiver().point.x),
@@ -92,8 +122,11 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
                                               16 * kRoundoff * norm(view.receiver().normal) * reach});
   half_spaces.push_back(
       {normal, dot(normal, plane.origin) - (2 * plane.normal_error + 16 * kRoundoff * norm(plane.normal)) * reach});
+  Box box;
+  box.extend(view.receiver().point);
+  for (const Vec3* v : corners) box.extend(*v);
   found.clear();
-  soup.index().find(half_spaces, found);
+  soup.index().find(half_spaces, box, found);
 
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
   for (const std::uint32_t item : found) {
@@ -102,7 +135,9 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
       continue;
     }
     const Shell& shell = soup.shells()[item - facets];
-    if (view.outside(shell) && region.in_front_of_source(shell)) {
+    const auto place = region.place_of(shell);
+    if (place == VisibleRegion<double>::Place::nowhere) continue;
+    if (place == VisibleRegion<double>::Place::in_front && view.outside(shell)) {
       if (!add_candidate({kNone, item - facets})) return false;
       continue;
     }
@@ -118,6 +153,8 @@ bool Viewpoint::State::prepare(const Source& source, int& source_facing) {
   const Facet& f = soup.facets()[source.facet];
   source_facing = view.excluded(source.facet) ? 0 : side_of(f.plane, view.receiver().point, view.counts());
   if (source_facing == 0) return false;
+  // From outside a solid no back face of it can be seen.
+  if (source_facing < 0 && f.shell != kNone && view.outside(soup.shells()[f.shell])) return false;
   corners.clear();
   horizons.clear();
   if (source.loop.empty()) {
@@ -200,6 +237,7 @@ void Viewpoint::look_from(const Receiver& receiver) {
   }
   state_->view.look_from(receiver);
   for (auto& candidates : state_->recent) candidates.facet = kNone;
+  state_->blockers.clear();
   state_->covered = state_->view.covered();
   if (state_->covered || !state_->view.in_contact()) return;
   double back = 0;

@@ -55,12 +55,23 @@ class VisibleRegion {
 
   enum class Effect { none, part, whole };
 
+  /// Whether an occluder, which may be added, hides all of the source. Leaves the source with no occluders.
+  bool hides(const Occluder& occluder) {
+    const bool whole = add(occluder) == Effect::whole;
+    count_ = 0;
+    for (auto& covered : covered_source_) covered.clear();
+    return whole;
+  }
+
   /// Adds an occluder. A shell must be convex, with the point outside its box and all of it on the point's side of the
-  /// source's plane (see in_front_of_source).
+  /// source's plane (place_of).
   Effect add(const Occluder& occluder);
 
-  /// Whether no vertex of the shell lies behind the source's plane, and one in front.
-  bool in_front_of_source(const Shell& shell);
+  enum class Place { nowhere, in_front, across };
+
+  /// Where the part of a shell that is above the horizon lies: nowhere in front of the source's plane, nowhere behind it, or
+  /// on both sides.
+  Place place_of(const Shell& shell);
 
   /// Calls sink(arc) for every stretch of the boundary, and for those that are empty but might not be without rounding.
   template <class Sink>
@@ -317,23 +328,21 @@ const Cone<Real>& VisibleRegion<Real>::cone_of_shell(std::uint32_t shell) {
 }
 
 template <class Real>
-bool VisibleRegion<Real>::in_front_of_source(const Shell& shell) {
-  bool in_front = false;
+typename VisibleRegion<Real>::Place VisibleRegion<Real>::place_of(const Shell& shell) {
+  bool in_front = false, behind = false, above = false;
   for (const std::uint32_t v : shell.vertices) {
+    above = above || view_.horizon(v) > 0;
     const int s = facing_source_ * side_of(*source_plane_, soup_.vertices()[v], view_.counts());
-    if (s < 0) return false;
     in_front = in_front || s > 0;
+    behind = behind || s < 0;
+    if (above && in_front && behind) return Place::across;
   }
-  return in_front;
+  return !above || !in_front ? Place::nowhere : behind ? Place::across : Place::in_front;
 }
 
 template <class Real>
 typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add(const Occluder& occluder) {
   if (occluder.shell == kNone) return add_facet(occluder.facet);
-  const auto& vertices = soup_.shells()[occluder.shell].vertices;
-  if (std::none_of(vertices.begin(), vertices.end(), [&](std::uint32_t v) { return view_.horizon(v) > 0; })) {
-    return Effect::none;
-  }
   if (added_.size() == count_) added_.emplace_back();
   Added& added = added_[count_];
   added.cone = &cone_of_shell(occluder.shell);
