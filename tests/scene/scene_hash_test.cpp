@@ -11,8 +11,8 @@ namespace {
 
 Scene triangle() {
   Scene scene;
-  scene.materials = {{.name = "m", .rho = {0.5, 0.5, 0.5}, .E = {0, 0, 1}}};
-  scene.objects = {{.name = "o"}};
+  scene.materials = {{"m", {0.5, 0.5, 0.5}, {0, 0, 1}, "", 0}};
+  scene.objects = {{"o", ""}};
   Surface surface;
   surface.polygon = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{{0.1, 0.1, 0}, {0.2, 0.1, 0}, {0.1, 0.2, 0}}}};
   scene.surfaces = {surface};
