@@ -9,6 +9,7 @@
 
 #include "geometry/facets.h"
 #include "geometry/shell.h"
+#include "geometry/surface_pieces.h"
 
 namespace exitance {
 namespace {
@@ -95,6 +96,7 @@ PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role
   find_neighbours();
   find_shells();
   find_coplanar();
+  find_closed(polygons);
   build_index();
 }
 
@@ -223,6 +225,24 @@ void PolygonSoup::find_coplanar() {
   }
 }
 
+/// Which polygons bound matter on their backs: those of closed pieces of surface, whether they look out (solids) or in
+/// (rooms). The two sides of a sheet enclose nothing.
+void PolygonSoup::find_closed(std::span<const Polygon> polygons) {
+  closed_.assign(polygons.size(), false);
+  bool contact = false;
+  for (std::uint32_t f = 0; f < facets_.size() && !contact; ++f) {
+    for (const std::uint32_t t : coplanar(f)) {
+      contact = contact || (roles_[facets_[t].polygon] == Role::patch &&
+                            dot(facets_[t].plane.normal, facets_[f].plane.normal) < 0);
+    }
+  }
+  if (!contact) return;
+  for (const SurfacePiece& piece : find_surface_pieces(polygons).pieces) {
+    if (!piece.closed || piece.volume == 0) continue;
+    for (const std::uint32_t p : piece.polygons) closed_[p] = true;
+  }
+}
+
 void PolygonSoup::build_index() {
   std::vector<Box> boxes(facets_.size() + shells_.size());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
@@ -241,7 +261,7 @@ bool PolygonSoup::covers(std::uint32_t t, std::uint32_t f) const {
   const bool same_facing = dot(facets_[t].plane.normal, facets_[f].plane.normal) > 0;
   switch (roles_[facets_[t].polygon]) {
     case Role::patch:
-      return same_facing && facets_[t].polygon > facets_[f].polygon;
+      return same_facing ? facets_[t].polygon > facets_[f].polygon : closed_[facets_[t].polygon];
     case Role::sheet:
       return true;
     case Role::solid_face:

@@ -14,7 +14,8 @@ namespace exitance {
 
 /// How a polygon takes part.
 enum class Role : std::uint8_t {
-  patch,       ///< emits, receives and occludes; a later patch lying in its plane and facing the same way covers it
+  patch,       ///< emits, receives and occludes; covers an earlier patch in its plane that faces the same way and, as part
+               ///< of a closed surface, one that it faces: what lies between is buried in a solid
   sheet,       ///< occludes only; covers every patch in whose plane it lies
   solid_face,  ///< a face, outward, of a closed polyhedron that occludes only; covers a patch in its plane which it faces
   unoccluding  ///< can be asked about, hides nothing
@@ -108,6 +109,7 @@ class PolygonSoup {
   void find_neighbours();
   void find_shells();
   void find_coplanar();
+  void find_closed(std::span<const Polygon> polygons);
   void build_index();
 
   std::vector<Vec3> vertices_;
@@ -115,6 +117,7 @@ class PolygonSoup {
   std::vector<Corner> corners_;
   std::vector<Shell> shells_;
   std::vector<Role> roles_;
+  std::vector<bool> closed_;  // by polygon: part of a closed surface; known only where patches lie against each other
   std::vector<std::uint32_t> first_facet_;
   std::vector<std::uint32_t> coplanar_, coplanar_first_;
   SpatialIndex index_;

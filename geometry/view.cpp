@@ -14,12 +14,10 @@ void View::look_from(const Receiver& receiver) {
     std::fill(vertices_.begin(), vertices_.end(), Seen{});
     epoch_ = 1;
   }
-  covered_ = in_contact_ = false;
+  covered_ = false;
   if (receiver.facet == kNone) return;
   for (const std::uint32_t t : soup_.coplanar(receiver.facet)) {
-    if (!holds_receiver(t)) continue;
-    covered_ = covered_ || soup_.covers(t, receiver.facet);
-    in_contact_ = in_contact_ || dot(soup_.facets()[t].plane.normal, soup_.facets()[receiver.facet].plane.normal) < 0;
+    covered_ = covered_ || (soup_.covers(t, receiver.facet) && holds_receiver(t));
   }
 }
 

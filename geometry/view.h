@@ -49,10 +49,6 @@ class View {
   /// Whether something that lies in the receiver's plane covers it.
   bool covered() const { return covered_; }
 
-  /// Whether the receiver lies within a facet in its plane that faces against its own: two solids in contact, or the two
-  /// sides of a sheet.
-  bool in_contact() const { return in_contact_; }
-
  private:
   struct Seen {
     std::uint32_t epoch = 0;
@@ -65,7 +61,7 @@ class View {
   Receiver receiver_;
   StageCounts counts_;
   std::uint32_t epoch_ = 0;
-  bool covered_ = false, in_contact_ = false;
+  bool covered_ = false;
   std::vector<Seen> facets_, vertices_;
 };
 

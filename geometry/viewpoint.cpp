@@ -49,7 +49,6 @@ struct Viewpoint::State {
   const PolygonSoup& soup;
   View view;
   std::uint64_t extended = 0;
-  bool covered = false;
   VisibleRegion<double> region;
   VisibleRegion<Extended> fine;
   std::array<Candidates, 4> recent;  // the facets of a polygon take turns
@@ -238,17 +237,9 @@ void Viewpoint::look_from(const Receiver& receiver) {
   state_->view.look_from(receiver);
   for (auto& candidates : state_->recent) candidates.facet = kNone;
   state_->blockers.clear();
-  state_->covered = state_->view.covered();
-  if (state_->covered || !state_->view.in_contact()) return;
-  double back = 0;
-  for (std::uint32_t f = 0; f < state_->soup.facets().size(); ++f) {
-    const PointFormFactor seen = form_factor({f, {}}, 1e-9);
-    if (seen.side == Side::back) back += seen.F;
-  }
-  state_->covered = back > 1 - 1e-6;
 }
 
-bool Viewpoint::covered() const { return state_->covered; }
+bool Viewpoint::covered() const { return state_->view.covered(); }
 
 PointFormFactor Viewpoint::form_factor(const Source& source, double tolerance) {
   State& s = *state_;
@@ -258,7 +249,7 @@ PointFormFactor Viewpoint::form_factor(const Source& source, double tolerance) {
   const bool above = s.prepare(source, source_facing);
   result.side = source_facing > 0 ? Side::front : source_facing < 0 ? Side::back : Side::edge_on;
   if (!above) return result;
-  if (s.covered) {
+  if (s.view.covered()) {
     result.visibility = Visibility::blocked;
     return result;
   }
@@ -279,7 +270,7 @@ std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {
   State& s = *state_;
   std::vector<BoundaryPiece> pieces;
   int source_facing = 0;
-  if (s.covered || !s.prepare(source, source_facing) || !s.put_occluders(source, source_facing)) return pieces;
+  if (s.view.covered() || !s.prepare(source, source_facing) || !s.put_occluders(source, source_facing)) return pieces;
   // Near the point of view a direction must be known far better than the point where it meets the source's plane.
   s.set_source<Extended>(source.facet, source_facing);
   s.add_candidates<Extended>(source.facet);

@@ -51,9 +51,8 @@ class Viewpoint {
   /// Sets the point. Throws std::invalid_argument on a zero or non-finite normal and on a non-finite point.
   void look_from(const Receiver& receiver);
 
-  /// Whether the receiver, on a facet, sees nothing because of a contact in its own plane: something covers it, or it is
-  /// buried in a solid that touches its surface. It is buried when it lies within a facet that faces against its own (as
-  /// on both sides of a sheet, too) and back sides fill all that it sees. All its form factors are 0.
+  /// Whether something that lies in the receiver's own plane covers it (only a receiver on a facet can be), a solid that
+  /// touches its surface included: it sees nothing, and all its form factors are 0.
   bool covered() const;
 
   /// F from the point to the visible part of the source, from whichever side it is seen. Where double precision cannot
