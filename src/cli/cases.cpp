@@ -11,6 +11,7 @@
 
 #include "src/cli/case_answers.h"
 #include "src/cli/json_text.h"
+#include "src/cli/verbs.h"
 #include "src/output/whole_file.h"
 #include "src/scene/input_error.h"
 
@@ -18,8 +19,6 @@ namespace exitance {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr int kBadInput = 3;
 
 class Cases {
  public:
@@ -46,7 +45,7 @@ class Cases {
     });
     write(answers);
     if (std::any_of(answers.begin(), answers.end(), [](const Json& a) { return a["status"] != "ok"; })) {
-      throw CLI::RuntimeError(kBadInput);
+      throw CLI::RuntimeError(bad_input);
     }
   }
 

@@ -12,7 +12,7 @@ namespace {
 /// Both integrals start with so many points, and go on with twice as many as before.
 constexpr std::uint64_t kFirstPoints = 250;
 /// An integral costs up to some 10 µs a point.
-constexpr std::uint64_t kScenePoints = 5'000'000, kFewestPoints = 2'000, kMostPoints = 50'000;
+constexpr std::uint64_t kScenePoints = 5'000'000, kFewestPoints = 2'000, kMostPoints = 100'000;
 
 double area_of(const PolygonSoup& soup, std::uint32_t polygon) {
   double area = 0;

@@ -6,9 +6,9 @@
 namespace exitance {
 namespace {
 
-/// What the difference of two rules is multiplied by to make an error: it is no bound where the integrand is not smooth,
-/// and less so where an event is known to be.
-constexpr double kSafety = 2, kUncutSafety = 8;
+/// What the difference of two rules is multiplied by to make an error. That of low orders can be small by chance, and
+/// is no bound where the integrand is not smooth.
+constexpr double kLowOrderSafety = 10, kHighOrderSafety = 2;
 /// What a cell with uncut events may hide from its sample points, as a share of the unobstructed value.
 constexpr double kUnnoticed = 4e-3;
 /// Proven error of a point's value beyond which extended precision is asked: this, or what the cell's share of the
@@ -18,6 +18,9 @@ constexpr double kPointTolerance = 1e-13, kCellShare = 1e-3;
 constexpr int lower(std::uint32_t order) {
   return order == 4 ? 3 : 6;
 }
+
+/// How many points a value in extended precision counts for: it takes some 50 times as long.
+constexpr std::uint64_t kExtendedCost = 5;
 
 }  // namespace
 
@@ -49,6 +52,7 @@ double AreaMean::rule(AreaViews& views, const Cell& cell, int order, double tole
   gauss_points(cell.shape, order, scratch_);
   const Vec3& normal = soup_->facets()[cell.facet].plane.normal;
   const double point_tolerance = std::max(kPointTolerance, kCellShare * tolerance / cell.shape.area());
+  const std::uint64_t extended_before = views.view.extended_count();
   double sum = 0;
   point_error = 0;
   for (const WeightedPoint& p : scratch_) {
@@ -60,7 +64,7 @@ double AreaMean::rule(AreaViews& views, const Cell& cell, int order, double tole
       point_error += p.weight * f.error;
     }
   }
-  points_ += scratch_.size();
+  points_ += scratch_.size() + kExtendedCost * (views.view.extended_count() - extended_before);
   return sum;
 }
 
@@ -70,7 +74,8 @@ void AreaMean::measure(AreaViews& views, Cell& cell, double tolerance) {
   cell.integral = rule(views, cell, static_cast<int>(cell.order), tolerance, cell.point_error);
   // Rounding: of each weight and product, and of the sum of up to 64 of them.
   cell.point_error += 80 * kRoundoff * cell.integral;
-  cell.error = (cell.uncut.empty() ? kSafety : kUncutSafety) * std::fabs(cell.integral - coarse);
+  cell.error =
+      (cell.order == 4 || !cell.uncut.empty() ? kLowOrderSafety : kHighOrderSafety) * std::fabs(cell.integral - coarse);
   if (!cell.uncut.empty()) {
     const auto loop = cell.shape.loop();
     const Vec3 middle = 0.25 * (cell.shape.corner[0] + cell.shape.corner[1] + cell.shape.corner[2] +

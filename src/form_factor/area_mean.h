@@ -22,7 +22,8 @@ class AreaMean {
  public:
   AreaMean(const PolygonSoup& soup, std::uint32_t receiver_polygon, std::uint32_t source_polygon);
 
-  /// Refines until error() ≤ tolerance or `points` points have been looked from in all.
+  /// Refines until error() ≤ tolerance or `points` points have been looked from in all; one that needs extended
+  /// precision counts for several.
   void refine(AreaViews& views, double tolerance, std::uint64_t points);
 
   bool sees_nothing() const { return cells_.empty(); }  ///< decided exactly

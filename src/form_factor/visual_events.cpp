@@ -12,23 +12,24 @@ constexpr std::size_t kOccluderEvents = 4000;
 
 struct Edge {
   std::uint32_t from, to;      ///< from < to
-  std::uint32_t facet, other;  ///< on either side of it; kNone: nothing, or several
+  std::uint32_t facet, other;  ///< on either side of it; kNone: nothing, several, or it does not matter
   friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
-/// Vertices and edges of some facets, each once; edges between facets of one polygon are left out.
+/// Vertices and edges of some facets, each once; edges between facets of one polygon are left out. Where an edge bounds
+/// always, whatever surface continues beyond it, it is kept without its neighbour.
 struct Outline {
   std::vector<std::uint32_t> vertices;
   std::vector<Edge> edges;
 
-  void add(const PolygonSoup& soup, std::uint32_t facet) {
+  void add(const PolygonSoup& soup, std::uint32_t facet, bool bounds_always) {
     const Facet& f = soup.facets()[facet];
     const auto c = soup.corners(f);
     for (std::size_t k = 0; k < c.size(); ++k) {
       vertices.push_back(c[k].vertex);
       const std::uint32_t next = c[(k + 1) % c.size()].vertex;
       if (c[k].neighbour != kNone && soup.facets()[c[k].neighbour].polygon == f.polygon) continue;
-      const std::uint32_t n = c[k].neighbour;
+      const std::uint32_t n = bounds_always ? kNone : c[k].neighbour;
       edges.push_back(
           {std::min(c[k].vertex, next), std::max(c[k].vertex, next), std::min(facet, n), std::max(facet, n)});
     }
@@ -41,9 +42,9 @@ struct Outline {
   }
 };
 
-Outline outline_of(const PolygonSoup& soup, const std::vector<std::uint32_t>& facets) {
+Outline outline_of(const PolygonSoup& soup, const std::vector<std::uint32_t>& facets, bool bounds_always) {
   Outline outline;
-  for (const std::uint32_t f : facets) outline.add(soup, f);
+  for (const std::uint32_t f : facets) outline.add(soup, f, bounds_always);
   outline.finish();
   return outline;
 }
@@ -179,14 +180,23 @@ std::vector<std::uint32_t> occluders_between(const PolygonSoup& soup, std::uint3
                                              std::uint32_t source_polygon) {
   StageCounts counts;
   const auto source_facets = facets_of(soup, source_polygon);
-  const Outline receiver = outline_of(soup, {receiver_facet}), source = outline_of(soup, source_facets);
+  const Outline receiver = outline_of(soup, {receiver_facet}, true), source = outline_of(soup, source_facets, true);
   const std::uint32_t receiver_polygon = soup.facets()[receiver_facet].polygon;
   Box box;
   for (const Outline* part : {&receiver, &source}) {
     for (const std::uint32_t v : part->vertices) box.extend(soup.vertices()[v]);
   }
-  std::vector<std::uint32_t> found;
-  soup.index().find(box, found);
+  std::vector<std::uint32_t> items, found;
+  soup.index().find(box, items);
+  const auto facet_count = static_cast<std::uint32_t>(soup.facets().size());
+  for (const std::uint32_t item : items) {
+    if (item < facet_count) {
+      found.push_back(item);
+    } else {
+      const auto& facets = soup.shells()[item - facet_count].facets;
+      found.insert(found.end(), facets.begin(), facets.end());
+    }
+  }
   std::sort(found.begin(), found.end());
 
   std::vector<HullSide> sides;
@@ -221,7 +231,7 @@ std::vector<VisualEvent> visual_events(const PolygonSoup& soup, std::uint32_t re
   for (const std::uint32_t t : soup.coplanar(receiver_facet)) events.contact(t);
   for (const std::uint32_t t : occluders) events.plane_of(t);
 
-  const Outline source = outline_of(soup, source_facets), between = outline_of(soup, occluders);
+  const Outline source = outline_of(soup, source_facets, true), between = outline_of(soup, occluders, false);
   for (const std::uint32_t v : between.vertices) {
     for (const Edge& e : source.edges) events.vertex_edge(v, e, true);
   }
