@@ -134,6 +134,7 @@ class VisibleRegion {
   std::vector<Signed<Real>> row_, weight_;
   std::vector<Stretch<Real>> within_;
   std::vector<const Vec3*> corners_;
+  std::vector<int> corner_sides_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ring_;
   Chart chart_;
 
@@ -270,8 +271,8 @@ Cone<Real>* VisibleRegion<Real>::cached(std::uint32_t item, bool& is_new) {
   return &cones_[slot.cone];
 }
 
-/// An edge on or below the horizon bounds nothing, and above the horizon the cone is the same without it: the cut of a
-/// convex cone by the horizon has its closing side in the horizon itself.
+/// Of a cone with a part above the horizon: an edge on or below the horizon bounds nothing, and above the horizon the cone is
+/// the same without it, because the cut of a convex cone by the horizon has its closing side in the horizon itself.
 template <class Real>
 void VisibleRegion<Real>::drop_below_horizon(Cone<Real>& cone) {
   std::erase_if(cone.sides, [&](const ConeSide<Real>& side) { return side.below_horizon; });
@@ -371,14 +372,16 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
 
   // Which side of the source's plane the occluder's corners lie on (+1: that of x), and of its own plane the source's.
   bool pierces = false;
+  corner_sides_.assign(loop.size(), 0);
   if (!covers) {
     bool in_front = false, behind = false;
-    for (const Corner& c : loop) {
-      const Vec3& v = vertices[c.vertex];
-      if (std::any_of(source_.corners.begin(), source_.corners.end(), [&](const auto& k) { return *k.exact.a == v; })) {
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const Vec3& v = vertices[loop[k].vertex];
+      if (std::any_of(source_.corners.begin(), source_.corners.end(), [&](const auto& c) { return *c.exact.a == v; })) {
         continue;
       }
       const int s = facing_source_ * side_of(*source_plane_, v, view_.counts());
+      corner_sides_[k] = s;
       in_front = in_front || s > 0;
       behind = behind || s < 0;
     }
@@ -408,17 +411,27 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
     // The corners' weights are S times facing_source_; ViewPoint's weight is S itself.
     clip(added.clipped, weight_, ViewPoint::Kind::at_source_plane, closing_cut(f.plane, facing));
     for (auto& c : added.clipped.corners) c.exact.sign_at_a *= facing_source_;
-    drop_below_horizon(added.clipped);
     added.cone = &added.clipped;
   }
-  // An edge whose neighbour faces the same way bounds nothing. Where an occluder lies in the source's plane, its neighbour
-  // may dive behind that plane: there only pieces of the same polygon carry on.
+  // An edge whose neighbour faces the same way, and hides something of the source, too, bounds nothing. Of an occluder that
+  // lies in the source's plane, and along an edge in that plane, the neighbour may dive behind it or lie in it.
+  const auto reaches_in_front = [&](std::uint32_t n) {
+    const auto c = soup_.corners(facets[n]);
+    return std::any_of(c.begin(), c.end(), [&](const Corner& k) {
+      return facing_source_ * side_of(*source_plane_, vertices[k.vertex], view_.counts()) > 0;
+    });
+  };
   added.edges.clear();
   for (const auto& side : added.cone->sides) {
-    added.edges.push_back(side.stretch);
     const std::uint32_t n = side.across;
-    added.edges.back().empty = n != kNone && n != source_facet_ &&
-                               (!covers || facets[n].polygon == f.polygon) && view_.facing(n) == facing;
+    bool goes_on = n != kNone && n != source_facet_ && view_.facing(n) == facing;
+    if (goes_on && covers) {
+      goes_on = facets[n].polygon == f.polygon;
+    } else if (goes_on && corner_sides_[side.from] == 0 && corner_sides_[side.to] == 0) {
+      goes_on = reaches_in_front(n);
+    }
+    added.edges.push_back(side.stretch);
+    added.edges.back().empty = goes_on;
   }
   return add_cone(added);
 }
