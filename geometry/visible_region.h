@@ -188,9 +188,11 @@ bool VisibleRegion<Real>::set_source(std::uint32_t facet, int facing, Corners co
         weight_.push_back({Real(0), Real(0), 0});
         continue;
       }
-      using std::fabs;
-      const Real value = fabs(dot(closing.m, source_.corners[k].w));
-      weight_.push_back({horizon[k] * value, closing.error * source_.corners[k].length, horizon[k]});
+      // Of corners near the horizon, as of an edge shared with the receiver's surface, rounding would leave only noise.
+      const ConeCorner<Real>& corner = source_.corners[k];
+      const Signed<Real> value{dot(closing.m, corner.w), closing.error * corner.length, horizon[k]};
+      const bool is_clear = value.value * horizon[k] > 0x1p20 * value.error;
+      weight_.push_back(is_clear ? value : refined_value_at(closing, corner, frame_, view_.counts()));
     }
     clip(source_, weight_, ViewPoint::Kind::at_horizon, closing);
   }
