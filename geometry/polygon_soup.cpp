@@ -225,6 +225,13 @@ void PolygonSoup::find_coplanar() {
   }
 }
 
+bool PolygonSoup::covers_back(std::uint32_t t, std::uint32_t f) const {
+  const std::uint32_t top = facets_[t].polygon, bottom = facets_[f].polygon;
+  if (top == bottom || roles_[top] != Role::patch || roles_[bottom] != Role::patch) return false;
+  const bool same_facing = dot(facets_[t].plane.normal, facets_[f].plane.normal) > 0;
+  return same_facing ? top < bottom : !closed_[bottom];
+}
+
 /// Which polygons bound matter on their backs: those of closed pieces of surface, whether they look out (solids) or in
 /// (rooms). The two sides of a sheet enclose nothing.
 void PolygonSoup::find_closed(std::span<const Polygon> polygons) {

@@ -97,6 +97,10 @@ class PolygonSoup {
   /// Whether facet t, one of coplanar(f), covers f where they overlap. Facets of one polygon never do.
   bool covers(std::uint32_t t, std::uint32_t f) const;
 
+  /// Whether facet t, one of coplanar(f), hides the back of f where they overlap: the other side of a sheet does, and of
+  /// patches that face the same way the earlier one, which lies beneath.
+  bool covers_back(std::uint32_t t, std::uint32_t f) const;
+
   /// Of all that occludes: item k is facet k, or shell k − facets().size() where that is convex; the facets of convex
   /// shells are not items themselves.
   const SpatialIndex& index() const { return index_; }

@@ -11,8 +11,8 @@
 //  - An occluder counts only with its part strictly in front of the source's plane. Where it pierces that plane, and the
 //    source lies on both sides of its own plane, it is cut along the line of both planes, which becomes an edge like others.
 //    Otherwise the cone of its rest is separated from the source's cone, or adds nothing within it.
-//  - One that lies in the source's plane counts whole if it covers the source (polygon_soup.h) and the source is seen from
-//    its front, else not at all.
+//  - One that lies in the source's plane counts whole if it covers the side of the source that is seen (polygon_soup.h),
+//    else not at all.
 //  - Edge-on occluders hide nothing.
 
 #include <algorithm>
@@ -368,9 +368,9 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
     return Effect::none;
   }
   const auto coplanar = soup_.coplanar(source_facet_);
-  // What covers a source lies on its front.
-  const bool covers = facing_source_ > 0 && std::binary_search(coplanar.begin(), coplanar.end(), facet) &&
-                      soup_.covers(facet, source_facet_);
+  const bool covers =
+      std::binary_search(coplanar.begin(), coplanar.end(), facet) &&
+      (facing_source_ > 0 ? soup_.covers(facet, source_facet_) : soup_.covers_back(facet, source_facet_));
 
   // Which side of the source's plane the occluder's corners lie on (+1: that of x), and of its own plane the source's.
   bool pierces = false;

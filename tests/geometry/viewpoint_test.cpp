@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace exitance {
 namespace {
 
@@ -73,6 +76,17 @@ TEST(Viewpoint, CoversLieOnTheFront) {
   const PointFormFactor behind = view.form_factor({0, {}});
   EXPECT_EQ(behind.side, Side::back);
   EXPECT_GT(behind.F, 0.5);
+}
+
+// Of the two sides of a sheet a point sees one, the front of the side that is turned to it.
+TEST(Viewpoint, SheetsAreSeenFromOneSide) {
+  const std::vector<Polygon> polygons = {{{{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}}, {}},
+                                         {{{1, -1, 1}, {1, 1, 1}, {-1, 1, 1}, {-1, -1, 1}}, {}}};
+  const PolygonSoup soup(polygons);
+  Viewpoint view(soup);
+  view.look_from({{0, 0, 0}, {0, 0, 1}});
+  EXPECT_GT(view.form_factor({0, {}}).F, 0.5);
+  EXPECT_EQ(view.form_factor({1, {}}).F, 0);
 }
 
 }  // namespace
