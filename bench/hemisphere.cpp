@@ -75,14 +75,7 @@ void hemisphere(benchmark::State& state) {
   if (!made.contains(n)) made.try_emplace(n, furnished_room(n), view_count(n));
   measure(state, made.at(n));
 }
-BENCHMARK(hemisphere)
-    ->ArgName("polygons")
-    ->Arg(500)
-    ->Arg(5000)
-    ->Arg(60000)
-    ->UseManualTime()
-    ->MinTime(1)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(hemisphere)->Apply(in_rooms_of_each_size);
 
 /// The same rooms with every face cut into triangles, which are then the polygons.
 void hemisphere_of_triangles(benchmark::State& state) {
@@ -91,14 +84,7 @@ void hemisphere_of_triangles(benchmark::State& state) {
   if (!made.contains(n)) made.try_emplace(n, cut_into_triangles(furnished_room(n)), view_count(n));
   measure(state, made.at(n));
 }
-BENCHMARK(hemisphere_of_triangles)
-    ->ArgName("polygons")
-    ->Arg(500)
-    ->Arg(5000)
-    ->Arg(60000)
-    ->UseManualTime()
-    ->MinTime(1)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(hemisphere_of_triangles)->Apply(in_rooms_of_each_size);
 
 }  // namespace
 }  // namespace exitance

@@ -98,14 +98,7 @@ void point_query(benchmark::State& state) {
   state.counters["rays_per_query"] = exact_ns / ray_ns;
   state.counters["sobol_per_query"] = exact_ns / sobol_ns;
 }
-BENCHMARK(point_query)
-    ->ArgName("polygons")
-    ->Arg(500)
-    ->Arg(5000)
-    ->Arg(60000)
-    ->UseManualTime()
-    ->MinTime(1)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(point_query)->Apply(in_rooms_of_each_size);
 
 }  // namespace
 }  // namespace exitance

@@ -13,8 +13,8 @@ struct ChartBox {
   double x0 = -std::numeric_limits<double>::infinity(), x1 = -x0, y0 = x0, y1 = -x0;
 };
 
-/// Directions are projected onto a plane across the middle of the source's cone. Conservative: boxes are widened by more
-/// than the rounding of their making, and what reaches out of the chart gets a box without end.
+/// Directions are projected onto a plane across the middle of the source's cone. Conservative: boxes are widened by
+/// more than the rounding of their making, and what reaches out of the chart gets a box without end.
 class Chart {
  public:
   template <class Real>

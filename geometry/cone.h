@@ -1,6 +1,7 @@
 #pragma once
-// The cone of directions in which a convex polygon is seen from a point: its sides are planes through the point. All values
-// are held in a number type Real (double, or extended precision) with proven error bounds; signs are always exact.
+// The cone of directions in which a convex polygon is seen from a point: its sides are planes through the point. All
+// values are held in a number type Real (double, or extended precision) with proven error bounds; signs are always
+// exact.
 
 #include <cmath>
 #include <cstdint>
@@ -60,9 +61,9 @@ struct Stretch {
 
 template <class Real>
 struct ConeCorner {
-  Vec<Real> w;     ///< from the point of view
-  Real length{};   ///< |w|
-  Real error{0};   ///< bound of |error of w| beyond the rounding of the difference of input coordinates
+  Vec<Real> w;       ///< from the point of view
+  Real length{};     ///< |w|
+  Real error{0};     ///< bound of |error of w| beyond the rounding of the difference of input coordinates
   bool kept = true;  ///< a corner of the cone; false where a clip cut it off and only an edge's line still needs it
   ViewPoint exact;
 };
@@ -73,11 +74,11 @@ struct ConeSide {
   Real length{};  ///< |m|
   Real error{};   ///< |m − true m| ≤ error and |m · w − true| ≤ error |w| for a corner without error
   ViewPlane exact;
-  Real sweep{1};  ///< bound of |dθ/dt| along the edge, θ the angle under which x sees it
-  std::uint32_t from = 0, to = 0;  ///< corners
-  Stretch<Real> stretch;           ///< of the edge between them that bounds the cone
+  Real sweep{1};                       ///< bound of |dθ/dt| along the edge, θ the angle under which x sees it
+  std::uint32_t from = 0, to = 0;      ///< corners
+  Stretch<Real> stretch;               ///< of the edge between them that bounds the cone
   std::uint32_t across = 0xffffffffu;  ///< facet that shares the edge; none: kNone
-  bool below_horizon = false;      ///< neither corner is above the receiver's horizon
+  bool below_horizon = false;          ///< neither corner is above the receiver's horizon
 };
 
 template <class Real>
@@ -98,9 +99,9 @@ Real roundoff() {
 }
 
 /// The plane through x and the edge between two corners. w has relative error u in each component, so has their
-/// difference e when taken from the input; the cross product w × e adds two roundings: each component is wrong by at most
-/// 4.01 u |w||e| (Cauchy–Schwarz on its two products), the vector by √3 times that, 7 u |w||e|. Its product with w_v adds
-/// at most (1 + 3.01) u |w||e||w_v|: 11 u in all; 12 covers the rounding of the bound.
+/// difference e when taken from the input; the cross product w × e adds two roundings: each component is wrong by at
+/// most 4.01 u |w||e| (Cauchy–Schwarz on its two products), the vector by √3 times that, 7 u |w||e|. Its product with
+/// w_v adds at most (1 + 3.01) u |w||e||w_v|: 11 u in all; 12 covers the rounding of the bound.
 template <class Real>
 void set_edge_plane(ConeSide<Real>& side, const Vec3& x, const ConeCorner<Real>& c, const ConeCorner<Real>& d,
                     int sign) {
@@ -151,16 +152,16 @@ Signed<Real> value_at(const ConeSide<Real>& side, const ConeCorner<Real>& corner
   return own_vertex ? Signed<Real>{} : refined_value_at(side, corner, frame, counts);
 }
 
-/// Narrows the stretch to where the linear function from a (at 0) to b (at 1) is positive. Both zero is the caller's case.
-/// refine(): called to make a and b more exact when the error of the crossing exceeds `bearable`.
+/// Narrows the stretch to where the linear function from a (at 0) to b (at 1) is positive. Both zero is the caller's
+/// case. refine(): called to make a and b more exact when the error of the crossing exceeds `bearable`.
 template <class Real, class Refine>
 void narrow(Stretch<Real>& stretch, Signed<Real>& a, Signed<Real>& b, const Real& bearable, const Refine& refine) {
   using std::fabs;
   if (a.sign <= 0 && b.sign <= 0) {
     stretch.empty = true;
   } else if (a.sign * b.sign < 0) {
-    // t = |a| / (|a| + |b|): |δt| ≤ (|b| δa + |a| δb) / (|a| + |b|)² to first order; where the errors are not small against
-    // the sum, all is open.
+    // t = |a| / (|a| + |b|): |δt| ≤ (|b| δa + |a| δb) / (|a| + |b|)² to first order; where the errors are not small
+    // against the sum, all is open.
     const auto error_of_crossing = [&] {
       const Real size_a = fabs(a.value), size_b = fabs(b.value), span = size_a + size_b;
       return 100 * (a.error + b.error) < span
@@ -184,9 +185,9 @@ void narrow(Stretch<Real>& stretch, Signed<Real>& a, Signed<Real>& b, const Real
   }
 }
 
-/// Cuts the cone of a convex polygon (side i runs from corner i to corner i + 1) down to where `weight`, a functional known
-/// at its corners, is positive; `closing` is the side that the cut makes, without its corners. New corners stay implicit.
-/// A polygon that only touches the plane is not changed; one without a positive corner must not be given.
+/// Cuts the cone of a convex polygon (side i runs from corner i to corner i + 1) down to where `weight`, a functional
+/// known at its corners, is positive; `closing` is the side that the cut makes, without its corners. New corners stay
+/// implicit. A polygon that only touches the plane is not changed; one without a positive corner must not be given.
 template <class Real>
 void clip(Cone<Real>& cone, const std::vector<Signed<Real>>& weight, ViewPoint::Kind kind,
           const ConeSide<Real>& closing) {

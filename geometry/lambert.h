@@ -7,8 +7,8 @@
 
 namespace exitance {
 
-/// F = 1/2π Σ θ (n·m): over the arcs of the boundary, θ the angle that an arc subtends at the point and m the unit normal of
-/// the plane through point and arc, towards the region (Lambert 1760). Add arcs, then ask.
+/// F = 1/2π Σ θ (n·m): over the arcs of the boundary, θ the angle that an arc subtends at the point and m the unit
+/// normal of the plane through point and arc, towards the region (Lambert 1760). Add arcs, then ask.
 template <class Real>
 class LambertSum {
  public:
@@ -33,8 +33,8 @@ class LambertSum {
     const Real term = g * theta;
 
     // δw: three roundings on parts no longer than |p| + |e|, and what the corners carry. δC: that of the side's normal,
-    // or 7 u |p||e| and the corners'. δθ ≤ (δS + δD) / (|w0||w1|), as S² + D² = |w0|²|w1|²; 1.1 covers the second order, which the
-    // comparison at the end keeps small. δg ≤ 1.1 δm / |m| and 8 roundings.
+    // or 7 u |p||e| and the corners'. δθ ≤ (δS + δD) / (|w0||w1|), as S² + D² = |w0|²|w1|²; 1.1 covers the second
+    // order, which the comparison at the end keeps small. δg ≤ 1.1 δm / |m| and 8 roundings.
     const Real corner = p.error + q.error;
     const Real dw = 4 * u * (p.length + e_length) + corner;
     const Real dC = of_vertices ? side.error : Real(8 * u * p.length * e_length + corner * (e_length + p.length));
@@ -45,8 +45,8 @@ class LambertSum {
     dtheta *= Real(1.1);
     const Real dg = Real(1.1) * side.error / side.length + 8 * u;
     const bool second_order_is_small = 20 * dw < (length0 < length1 ? length0 : length1) &&
-                                       20 * side.error < side.length &&
-                                       20 * arc.t0_error * e_length < length0 && 20 * arc.t1_error * e_length < length1;
+                                       20 * side.error < side.length && 20 * arc.t0_error * e_length < length0 &&
+                                       20 * arc.t1_error * e_length < length1;
     ++arcs_;
     if (!second_order_is_small) {  // nothing is known; an arc is shorter than π
       error_ += boost::math::constants::pi<Real>();

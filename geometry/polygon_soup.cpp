@@ -74,8 +74,8 @@ int side_of(const Plane& plane, const Vec3& v, StageCounts& counts) {
     ++counts.filter;
     return c > p ? plane.axis_sign : c < p ? -plane.axis_sign : 0;
   }
-  // The normal's error in each component, and on each product one rounding of the difference, one of its own and at most
-  // two of the sum.
+  // The normal's error in each component, and on each product one rounding of the difference, one of its own and at
+  // most two of the sum.
   const Vec3 w = v - plane.origin;
   const double value = dot(plane.normal, w);
   const double bound = (1.01 * plane.normal_error + 5 * kRoundoff * plane.normal_size) *
@@ -182,7 +182,8 @@ void PolygonSoup::find_shells() {
         const Corner& c = loop[k];
         shell.vertices.push_back(c.vertex);
         if (f < c.neighbour) shell.edges.push_back({c.vertex, loop[(k + 1) % loop.size()].vertex, f, c.neighbour});
-        // Convex along every edge, a closed surface that does not intersect itself is convex as a whole (Tietze–Nakajima).
+        // Convex along every edge, a closed surface that does not intersect itself is convex as a whole
+        // (Tietze–Nakajima).
         for (const Corner& n : corners(facets_[c.neighbour])) {
           shell.convex = shell.convex && side_of(facets_[f].plane, vertices_[n.vertex], counts) <= 0;
         }

@@ -14,10 +14,11 @@ namespace exitance {
 
 /// How a polygon takes part.
 enum class Role : std::uint8_t {
-  patch,       ///< emits, receives and occludes; covers an earlier patch in its plane that faces the same way and, as part
-               ///< of a closed surface, one that it faces: what lies between is buried in a solid
-  sheet,       ///< occludes only; covers every patch in whose plane it lies
-  solid_face,  ///< a face, outward, of a closed polyhedron that occludes only; covers a patch in its plane which it faces
+  patch,  ///< emits, receives and occludes; covers an earlier patch in its plane that faces the same way and, as part
+          ///< of a closed surface, one that it faces: what lies between is buried in a solid
+  sheet,  ///< occludes only; covers every patch in whose plane it lies
+  solid_face,  ///< a face, outward, of a closed polyhedron that occludes only; covers a patch in its plane which it
+               ///< faces
   unoccluding  ///< can be asked about, hides nothing
 };
 
@@ -48,7 +49,8 @@ struct Facet {
 
 struct Corner {
   std::uint32_t vertex = 0;
-  std::uint32_t neighbour = kNone;  ///< the one facet across the edge from this corner to the next; kNone: none, or several
+  std::uint32_t neighbour =
+      kNone;  ///< the one facet across the edge from this corner to the next; kNone: none, or several
 };
 
 /// An edge of a shell: from – to runs counter-clockwise around facet `left`, clockwise around `right`.
@@ -59,7 +61,7 @@ struct ShellEdge {
 /// Facets that bound a solid, facing out.
 struct Shell {
   Box box;
-  bool convex = false;  ///< exactly, along every edge
+  bool convex = false;                          ///< exactly, along every edge
   std::vector<std::uint32_t> facets, vertices;  ///< each once, ascending
   std::vector<ShellEdge> edges;                 ///< each once
 };
@@ -84,12 +86,12 @@ class PolygonSoup {
   /// The facets of polygon p are first_facet(p) … first_facet(p + 1) − 1.
   std::uint32_t first_facet(std::uint32_t polygon) const { return first_facet_[polygon]; }
 
-  /// Closed manifolds that bound a solid (shell.h). A ray from outside the box meets a front face of the shell before any
-  /// back face: back faces hide nothing that front faces do not.
+  /// Closed manifolds that bound a solid (shell.h). A ray from outside the box meets a front face of the shell before
+  /// any back face: back faces hide nothing that front faces do not.
   std::span<const Shell> shells() const { return shells_; }
 
-  /// Other facets that lie exactly in the plane of facet f, or of the same polygon within rounding (2^-40 of f's size), and
-  /// touch its box, ascending.
+  /// Other facets that lie exactly in the plane of facet f, or of the same polygon within rounding (2^-40 of f's size),
+  /// and touch its box, ascending.
   std::span<const std::uint32_t> coplanar(std::uint32_t f) const {
     return {coplanar_.data() + coplanar_first_[f], coplanar_.data() + coplanar_first_[f + 1]};
   }
@@ -97,8 +99,8 @@ class PolygonSoup {
   /// Whether facet t, one of coplanar(f), covers f where they overlap. Facets of one polygon never do.
   bool covers(std::uint32_t t, std::uint32_t f) const;
 
-  /// Whether facet t, one of coplanar(f), hides the back of f where they overlap: the other side of a sheet does, and of
-  /// patches that face the same way the earlier one, which lies beneath.
+  /// Whether facet t, one of coplanar(f), hides the back of f where they overlap: the other side of a sheet does, and
+  /// of patches that face the same way the earlier one, which lies beneath.
   bool covers_back(std::uint32_t t, std::uint32_t f) const;
 
   /// Of all that occludes: item k is facet k, or shell k − facets().size() where that is convex; the facets of convex

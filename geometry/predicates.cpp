@@ -42,7 +42,8 @@ template <class NT>
 NT functional_at_vertex(const ViewFrame& frame, const ViewPlane& plane, const Vec3& v, bool on_source) {
   switch (plane.kind) {
     case ViewPlane::Kind::edge:
-      return determinant(Difference<NT>(*plane.c, frame.x), Difference<NT>(*plane.d, frame.x), Difference<NT>(v, frame.x));
+      return determinant(Difference<NT>(*plane.c, frame.x), Difference<NT>(*plane.d, frame.x),
+                         Difference<NT>(v, frame.x));
     case ViewPlane::Kind::horizon:
       return horizon_value<NT>(frame.x, frame.normal, v);
     default: {
@@ -72,7 +73,8 @@ NT functional(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& p
   return point.sign_at_a > 0 ? value : NT(0) - value;
 }
 
-/// Sign of an interval that doesn't hold 0. Overflow gives an interval that does, or one with a NaN, which decides nothing.
+/// Sign of an interval that doesn't hold 0. Overflow gives an interval that does, or one with a NaN, which decides
+/// nothing.
 std::optional<int> certain_sign(const Interval& value) {
   if (value.inf() > 0) return 1;
   if (value.sup() < 0) return -1;
@@ -94,8 +96,8 @@ int sign_of(const Polynomial& polynomial, StageCounts& counts) {
   return static_cast<int>(CGAL::sign(polynomial.template operator()<Exact>()));
 }
 
-/// A value whose error is at most `bound` has a certain sign when it exceeds it. Underflow in a product of three adds less
-/// than 2^-1000; NaN and overflow decide nothing.
+/// A value whose error is at most `bound` has a certain sign when it exceeds it. Underflow in a product of three adds
+/// less than 2^-1000; NaN and overflow decide nothing.
 std::optional<int> certain_sign(double value, double bound) {
   bound += 0x1p-1000;
   if (value > bound) return 1;
@@ -180,7 +182,8 @@ ExactValue exact_plane_value(const PlanePoints& plane, const Vec3& v) {
 
 Vec3 exact_cross(const Vec3& x, const Vec3& c, const Vec3& d) {
   const Difference<Exact> p(c, x), q(d, x);
-  return {(p.y * q.z - p.z * q.y).to_double(), (p.z * q.x - p.x * q.z).to_double(), (p.x * q.y - p.y * q.x).to_double()};
+  return {(p.y * q.z - p.z * q.y).to_double(), (p.z * q.x - p.x * q.z).to_double(),
+          (p.x * q.y - p.y * q.x).to_double()};
 }
 
 }  // namespace exitance

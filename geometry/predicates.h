@@ -1,5 +1,6 @@
 #pragma once
-// Exact signs of small polynomials in input coordinates, decided in stages: double with a proven bound, interval, exact.
+// Exact signs of small polynomials in input coordinates, decided in stages: double with a proven bound, interval,
+// exact.
 
 #include <cstdint>
 #include <optional>
@@ -49,7 +50,7 @@ struct ViewPlane {
   enum class Kind : std::uint8_t {
     edge,     ///< det(c − x, d − x, v − x), through an edge cd
     horizon,  ///< normal · (v − x)
-    cut       ///< S(x) T(v) − T(x) S(v), through the line in which the planes S (the source's) and T (an occluder's) meet
+    cut  ///< S(x) T(v) − T(x) S(v), through the line in which the planes S (the source's) and T (an occluder's) meet
   };
   Kind kind = Kind::edge;
   int sign = 1;  ///< factor that makes the functional positive inside
@@ -80,8 +81,8 @@ struct ExactValue {
   int sign = 0;
 };
 
-/// Value of the functional at the point, by interval and, where those are wide, by exact arithmetic (the double filter is
-/// the caller's, who has the values at hand). Relative error at most 2^-44.
+/// Value of the functional at the point, by interval and, where those are wide, by exact arithmetic (the double filter
+/// is the caller's, who has the values at hand). Relative error at most 2^-44.
 ExactValue exact_value_at(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& point, StageCounts& counts);
 
 /// det(b − a, c − a, v − a) for the points of a plane, relative error at most 2^-48.

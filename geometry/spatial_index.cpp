@@ -21,7 +21,9 @@ Box box_of(std::span<const std::uint32_t> items, std::span<const Box> boxes) {
 
 /// Where to cut the items (reordered) in two: binned surface area heuristic, halves where all centres coincide.
 std::size_t split(std::span<std::uint32_t> items, std::span<const Box> boxes) {
-  const auto centre = [&](std::uint32_t i, int axis) { return 0.5 * boxes[i].lower[axis] + 0.5 * boxes[i].upper[axis]; };
+  const auto centre = [&](std::uint32_t i, int axis) {
+    return 0.5 * boxes[i].lower[axis] + 0.5 * boxes[i].upper[axis];
+  };
   double best_cost = std::numeric_limits<double>::infinity();
   int best_axis = -1, best_bin = 0;
   std::array<double, 3> low{}, scale{};
@@ -103,7 +105,8 @@ std::int32_t SpatialIndex::build(std::span<std::uint32_t> items, std::span<const
   for (std::size_t k = 0; k < 4; ++k) {
     const Box box = k < parts ? box_of(part[k], boxes) : Box{};
     std::int32_t child = 0;
-    if (k < parts) child = part[k].size() == 1 ? -1 - static_cast<std::int32_t>(part[k][0]) : build(part[k], boxes, depth + 1);
+    if (k < parts)
+      child = part[k].size() == 1 ? -1 - static_cast<std::int32_t>(part[k][0]) : build(part[k], boxes, depth + 1);
     Node& node = nodes_[static_cast<std::size_t>(index)];
     for (int axis = 0; axis < 3; ++axis) {
       node.lower[static_cast<std::size_t>(axis)][k] = box.lower[axis];

@@ -46,8 +46,8 @@ struct HalfSpace {
 };
 
 /// Bounding volume hierarchy with four children a node, split by the surface area heuristic. Searches are conservative:
-/// nothing that meets the region is left out, some that does not may be returned. Items with an empty box are never found. The
-/// same boxes give the same tree.
+/// nothing that meets the region is left out, some that does not may be returned. Items with an empty box are never
+/// found. The same boxes give the same tree.
 class SpatialIndex {
  public:
   SpatialIndex() = default;

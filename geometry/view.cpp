@@ -49,8 +49,8 @@ int View::horizon(std::uint32_t vertex) {
   return seen.sign;
 }
 
-/// Whether the receiver, by identity in the facet's plane, lies in the facet's interior: exact in the projection along the
-/// largest component of the normal.
+/// Whether the receiver, by identity in the facet's plane, lies in the facet's interior: exact in the projection along
+/// the largest component of the normal.
 bool View::holds_receiver(std::uint32_t facet) {
   const Facet& f = soup_.facets()[facet];
   const Vec3 n = f.plane.normal;

@@ -8,8 +8,9 @@
 
 namespace exitance {
 
-/// A point that receives, with the normal of its surface (any length but zero). A point of a facet lies on it by identity,
-/// not by sign: it names the facet, and then neither that facet nor what lies in its plane hides anything from it.
+/// A point that receives, with the normal of its surface (any length but zero). A point of a facet lies on it by
+/// identity, not by sign: it names the facet, and then neither that facet nor what lies in its plane hides anything
+/// from it.
 struct Receiver {
   Vec3 point;
   Vec3 normal;
@@ -33,8 +34,8 @@ class View {
   /// Whether a facet is the receiver's own or lies in its plane: it can't be seen and hides nothing.
   bool excluded(std::uint32_t facet) const;
 
-  /// The side from which an occluding facet is seen: +1 front, −1 back, 0 when it hides nothing from here that others do not
-  /// hide: excluded, edge-on, or the back face of a shell that the point is outside of.
+  /// The side from which an occluding facet is seen: +1 front, −1 back, 0 when it hides nothing from here that others
+  /// do not hide: excluded, edge-on, or the back face of a shell that the point is outside of.
   int facing(std::uint32_t facet);
 
   /// Side of a vertex against the receiver's horizon: +1 above.
@@ -42,9 +43,7 @@ class View {
 
   /// Whether the point is outside of the shell's box, grown because a point that lies in a contact by identity may be
   /// rounded out of it.
-  bool outside(const Shell& shell) const {
-    return !shell.box.contains(receiver_.point, 0x1p-40 * soup_.extent());
-  }
+  bool outside(const Shell& shell) const { return !shell.box.contains(receiver_.point, 0x1p-40 * soup_.extent()); }
 
   /// Whether something that lies in the receiver's plane covers it.
   bool covered() const { return covered_; }

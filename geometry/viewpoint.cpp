@@ -12,8 +12,9 @@ namespace exitance {
 namespace {
 
 /// 80 decimal digits, 266 bits.
-using Extended = boost::multiprecision::number<
-    boost::multiprecision::mpfr_float_backend<80, boost::multiprecision::allocate_stack>, boost::multiprecision::et_off>;
+using Extended =
+    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<80, boost::multiprecision::allocate_stack>,
+                                  boost::multiprecision::et_off>;
 
 }  // namespace
 
@@ -81,8 +82,8 @@ bool Viewpoint::State::add_candidate(const Occluder& occluder) {
   return !candidates.blocked;
 }
 
-/// Whether one of the occluders that hid the last hidden sources hides all of the current source, too. They are likely to
-/// when sources that follow each other lie close together.
+/// Whether one of the occluders that hid the last hidden sources hides all of the current source, too. They are likely
+/// to when sources that follow each other lie close together.
 bool Viewpoint::State::hidden_by_recent() {
   for (std::size_t k = 0; k < blockers.size(); ++k) {
     const Occluder blocker = blockers[k];
@@ -105,11 +106,12 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
     candidates_of(facet).blocked = true;
     return false;
   }
-  // Half-spaces that hold all that can lie between: the source's cone and the near side of its plane. |v − x| and |v| are at
-  // most `reach` within the scene; each offset is lowered by the errors of the normal and of both products.
-  const double reach = 4 * std::fmax(soup.extent(), std::fmax(std::fabs(view.receiver().point.x),
-                                                              std::fmax(std::fabs(view.receiver().point.y),
-                                                                        std::fabs(view.receiver().point.z))));
+  // Half-spaces that hold all that can lie between: the source's cone and the near side of its plane. |v − x| and |v|
+  // are at most `reach` within the scene; each offset is lowered by the errors of the normal and of both products.
+  const double reach =
+      4 * std::fmax(soup.extent(),
+                    std::fmax(std::fabs(view.receiver().point.x),
+                              std::fmax(std::fabs(view.receiver().point.y), std::fabs(view.receiver().point.z))));
   half_spaces.clear();
   for (const auto& side : region.source().sides) {
     const Vec3 m{side.m.x, side.m.y, side.m.z};
@@ -118,7 +120,7 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   const Plane& plane = soup.facets()[facet].plane;
   const Vec3 normal = side_of(plane, view.receiver().point, view.counts()) * plane.normal;
   half_spaces.push_back({view.receiver().normal, dot(view.receiver().normal, view.receiver().point) -
-                                              16 * kRoundoff * norm(view.receiver().normal) * reach});
+                                                     16 * kRoundoff * norm(view.receiver().normal) * reach});
   half_spaces.push_back(
       {normal, dot(normal, plane.origin) - (2 * plane.normal_error + 16 * kRoundoff * norm(plane.normal)) * reach});
   Box box;
@@ -188,8 +190,8 @@ PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
   result.visibility = r.occluder_count() == 0 ? Visibility::open
                       : lambert.arcs() == 0   ? Visibility::blocked
                                               : Visibility::partial;
-  // What does not exceed its own error is 0 as far as can be told. A true form factor is never negative, so that raising to
-  // 0 only removes error.
+  // What does not exceed its own error is 0 as far as can be told. A true form factor is never negative, so that
+  // raising to 0 only removes error.
   const Real value = lambert.value(), error = lambert.error();
   if (value > error) {
     result.F = static_cast<double>(value);
@@ -201,8 +203,8 @@ PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
   return result;
 }
 
-/// Sets the current source, prepared, and adds its occluders; false when they hide all of it. The candidates of a facet are
-/// looked for once for all its pieces.
+/// Sets the current source, prepared, and adds its occluders; false when they hide all of it. The candidates of a facet
+/// are looked for once for all its pieces.
 bool Viewpoint::State::put_occluders(const Source& source, int source_facing) {
   Candidates& candidates = candidates_of(source.facet);
   if (candidates.facet != source.facet) {
@@ -239,7 +241,9 @@ void Viewpoint::look_from(const Receiver& receiver) {
   state_->blockers.clear();
 }
 
-bool Viewpoint::covered() const { return state_->view.covered(); }
+bool Viewpoint::covered() const {
+  return state_->view.covered();
+}
 
 PointFormFactor Viewpoint::form_factor(const Source& source, double tolerance) {
   State& s = *state_;
@@ -284,7 +288,8 @@ std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {
     const auto point = [&](const Extended& t) {
       const auto w = p + t * e;
       const Extended scale = arc.of_source ? Extended(1) : Extended(height / dot(normal, w));
-      return Vec3{static_cast<double>(s.view.receiver().point.x + scale * w.x), static_cast<double>(s.view.receiver().point.y + scale * w.y),
+      return Vec3{static_cast<double>(s.view.receiver().point.x + scale * w.x),
+                  static_cast<double>(s.view.receiver().point.y + scale * w.y),
                   static_cast<double>(s.view.receiver().point.z + scale * w.z)};
     };
     // The region lies to the left of the direction whose normal with x points to it: out of an occluder's cone.
@@ -296,8 +301,12 @@ std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {
   return pieces;
 }
 
-const StageCounts& Viewpoint::stage_counts() const { return state_->view.counts(); }
-std::uint64_t Viewpoint::extended_count() const { return state_->extended; }
+const StageCounts& Viewpoint::stage_counts() const {
+  return state_->view.counts();
+}
+std::uint64_t Viewpoint::extended_count() const {
+  return state_->extended;
+}
 
 double area(std::span<const BoundaryPiece> region) {
   if (region.empty()) return 0;

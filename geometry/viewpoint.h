@@ -10,8 +10,8 @@
 
 namespace exitance {
 
-/// A convex source: a whole facet (empty loop) or a piece of it, whose loop runs counter-clockwise seen from the facet's
-/// front and whose points, though rounded, lie in the facet's plane by identity.
+/// A convex source: a whole facet (empty loop) or a piece of it, whose loop runs counter-clockwise seen from the
+/// facet's front and whose points, though rounded, lie in the facet's plane by identity.
 struct Source {
   std::uint32_t facet = 0;
   std::span<const Vec3> loop;
@@ -34,13 +34,15 @@ struct PointFormFactor {
   Visibility visibility = Visibility::away;
 };
 
-/// A stretch of the boundary of a visible region, in the source's plane; the region lies to its left as seen from the point.
+/// A stretch of the boundary of a visible region, in the source's plane; the region lies to its left as seen from the
+/// point.
 struct BoundaryPiece {
   Vec3 from, to;
   bool of_source = false;  ///< lies on the source's own boundary or on the horizon, else on an occluder's shadow
 };
 
-/// One point of view. Holds scratch memory: one object a thread, used for many points of one soup, which must outlive it.
+/// One point of view. Holds scratch memory: one object a thread, used for many points of one soup, which must outlive
+/// it.
 class Viewpoint {
  public:
   explicit Viewpoint(const PolygonSoup& soup);
@@ -51,8 +53,8 @@ class Viewpoint {
   /// Sets the point. Throws std::invalid_argument on a zero or non-finite normal and on a non-finite point.
   void look_from(const Receiver& receiver);
 
-  /// Whether something that lies in the receiver's own plane covers it (only a receiver on a facet can be), a solid that
-  /// touches its surface included: it sees nothing, and all its form factors are 0.
+  /// Whether something that lies in the receiver's own plane covers it (only a receiver on a facet can be), a solid
+  /// that touches its surface included: it sees nothing, and all its form factors are 0.
   bool covered() const;
 
   /// F from the point to the visible part of the source, from whichever side it is seen. Where double precision cannot

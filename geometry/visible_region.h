@@ -1,17 +1,19 @@
 #pragma once
 // The visible part of one convex source behind convex occluders: its boundary, as stretches of their edges.
 //
-// No region is built. The visible region is V = cone(source) − ∪ cone(occluder); a point of an edge that lies on no other
-// edge bounds V exactly where it is covered by no other occluder. Where edges coincide, what lies to their left and right
-// decides: an occluder covers the side of the line that it lies on; of occluder edges with the occluder on the same side one
-// (the first added) stands for all; an occluder edge on the source's boundary bounds nothing. Coincidences, and so all
-// degenerate positions, are decided by exact signs; crossings of edges are rounded parameters with error bounds, and an
-// interval that is wrong by a rounding costs no more than a rounding.
+// No region is built. The visible region is V = cone(source) − ∪ cone(occluder); a point of an edge that lies on no
+// other edge bounds V exactly where it is covered by no other occluder. Where edges coincide, what lies to their left
+// and right decides: an occluder covers the side of the line that it lies on; of occluder edges with the occluder on
+// the same side one (the first added) stands for all; an occluder edge on the source's boundary bounds nothing.
+// Coincidences, and so all degenerate positions, are decided by exact signs; crossings of edges are rounded parameters
+// with error bounds, and an interval that is wrong by a rounding costs no more than a rounding.
 //
-//  - An occluder counts only with its part strictly in front of the source's plane. Where it pierces that plane, and the
-//    source lies on both sides of its own plane, it is cut along the line of both planes, which becomes an edge like others.
-//    Otherwise the cone of its rest is separated from the source's cone, or adds nothing within it.
-//  - One that lies in the source's plane counts whole if it covers the side of the source that is seen (polygon_soup.h),
+//  - An occluder counts only with its part strictly in front of the source's plane. Where it pierces that plane, and
+//  the
+//    source lies on both sides of its own plane, it is cut along the line of both planes, which becomes an edge like
+//    others. Otherwise the cone of its rest is separated from the source's cone, or adds nothing within it.
+//  - One that lies in the source's plane counts whole if it covers the side of the source that is seen
+//  (polygon_soup.h),
 //    else not at all.
 //  - Edge-on occluders hide nothing.
 
@@ -49,8 +51,8 @@ class VisibleRegion {
 
   explicit VisibleRegion(View& view) : view_(view), soup_(view.soup()) {}
 
-  /// Starts on a source in a facet's plane, seen from the view's point, which lies strictly on side `facing` (±1) of that
-  /// plane. Its corners run counter-clockwise seen from the facet's front; `horizon`: the sign of each against the
+  /// Starts on a source in a facet's plane, seen from the view's point, which lies strictly on side `facing` (±1) of
+  /// that plane. Its corners run counter-clockwise seen from the facet's front; `horizon`: the sign of each against the
   /// receiver's horizon. False when no part of it is above the horizon.
   bool set_source(std::uint32_t facet, int facing, Corners corners, std::span<const int> horizon);
 
@@ -73,8 +75,8 @@ class VisibleRegion {
 
   enum class Place { nowhere, in_front, across };
 
-  /// Where the part of a shell that is above the horizon lies: nowhere in front of the source's plane, nowhere behind it, or
-  /// on both sides.
+  /// Where the part of a shell that is above the horizon lies: nowhere in front of the source's plane, nowhere behind
+  /// it, or on both sides.
   Place place_of(const Shell& shell);
 
   /// Calls sink(arc) for every stretch of the boundary, and for those that are empty but might not be without rounding.
@@ -273,8 +275,9 @@ Cone<Real>* VisibleRegion<Real>::cached(std::uint32_t item, bool& is_new) {
   return &cones_[slot.cone];
 }
 
-/// Of a cone with a part above the horizon: an edge on or below the horizon bounds nothing, and above the horizon the cone is
-/// the same without it, because the cut of a convex cone by the horizon has its closing side in the horizon itself.
+/// Of a cone with a part above the horizon: an edge on or below the horizon bounds nothing, and above the horizon the
+/// cone is the same without it, because the cut of a convex cone by the horizon has its closing side in the horizon
+/// itself.
 template <class Real>
 void VisibleRegion<Real>::drop_below_horizon(Cone<Real>& cone) {
   std::erase_if(cone.sides, [&](const ConeSide<Real>& side) { return side.below_horizon; });
@@ -415,8 +418,8 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
     for (auto& c : added.clipped.corners) c.exact.sign_at_a *= facing_source_;
     added.cone = &added.clipped;
   }
-  // An edge whose neighbour faces the same way, and hides something of the source, too, bounds nothing. Of an occluder that
-  // lies in the source's plane, and along an edge in that plane, the neighbour may dive behind it or lie in it.
+  // An edge whose neighbour faces the same way, and hides something of the source, too, bounds nothing. Of an occluder
+  // that lies in the source's plane, and along an edge in that plane, the neighbour may dive behind it or lie in it.
   const auto reaches_in_front = [&](std::uint32_t n) {
     const auto c = soup_.corners(facets[n]);
     return std::any_of(c.begin(), c.end(), [&](const Corner& k) {

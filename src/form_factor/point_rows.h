@@ -31,8 +31,8 @@ struct PointRows {
   PointRowStatistics statistics;
 };
 
-/// Proven error that double precision must reach, else extended precision is asked. True errors are about a thousandth of
-/// it: a source behind hundreds of occluders has hundreds of arcs, each with its own worst case.
+/// Proven error that double precision must reach, else extended precision is asked. True errors are about a thousandth
+/// of it: a source behind hundreds of occluders has hundreds of arcs, each with its own worst case.
 inline constexpr double kPointTolerance = 1e-11;
 
 /// Rows of the elements `first` … `last` − 1. In parallel; any number of threads gives the same bits. The mesh must be

@@ -19,34 +19,34 @@ PointFormFactor ask(const std::vector<Polygon>& polygons, const Vec3& x, const V
   return view.form_factor({soup.first_facet(static_cast<std::uint32_t>(polygons.size()) - 1), {}});
 }
 
-// A bent quadrilateral's halves (0 and 1) stand on the source (3); a triangle (2) that shares an edge with half 1 lies in the
-// source's plane, faces the point like half 1, and hides nothing: the shared edge still bounds what half 1 hides.
+// A bent quadrilateral's halves (0 and 1) stand on the source (3); a triangle (2) that shares an edge with half 1 lies
+// in the source's plane, faces the point like half 1, and hides nothing: the shared edge still bounds what half 1
+// hides.
 TEST(Viewpoint, NeighbourInTheSourcesPlaneDoesNotCarryOn) {
-  const std::vector<Polygon> polygons = {
-      {{{5.3289999999999997, 2.3363730669710785, 0.4376672056356824},
-        {5.3125828622157885, 2.3648083837376763, 0.49252143771883894},
-        {5.3629948355779229, 2.3736973747702312, 0.49252143771883894}},
-       {}},
-      {{{5.3289999999999997, 2.3363730669710785, 0.4376672056356824},
-        {5.3629948355779229, 2.3736973747702312, 0.49252143771883894},
-        {5.3572932234611361, 2.3413619256261735, 0.4376672056356824}},
-       {}},
-      {{{5.3821738666258749, 2.273002920411527, 0.4376672056356824},
-        {5.3289999999999997, 2.3363730669710785, 0.4376672056356824},
-        {5.3572932234611361, 2.3413619256261735, 0.4376672056356824}},
-       {}},
-      {{{4.4000000000000004, 2.1499999999999999, 0.4376672056356824},
-        {5.5999999999999996, 2.1499999999999999, 0.4376672056356824},
-        {5.5999999999999996, 2.4499999999999997, 0.4376672056356824}},
-       {}}};
+  const std::vector<Polygon> polygons = {{{{5.3289999999999997, 2.3363730669710785, 0.4376672056356824},
+                                           {5.3125828622157885, 2.3648083837376763, 0.49252143771883894},
+                                           {5.3629948355779229, 2.3736973747702312, 0.49252143771883894}},
+                                          {}},
+                                         {{{5.3289999999999997, 2.3363730669710785, 0.4376672056356824},
+                                           {5.3629948355779229, 2.3736973747702312, 0.49252143771883894},
+                                           {5.3572932234611361, 2.3413619256261735, 0.4376672056356824}},
+                                          {}},
+                                         {{{5.3821738666258749, 2.273002920411527, 0.4376672056356824},
+                                           {5.3289999999999997, 2.3363730669710785, 0.4376672056356824},
+                                           {5.3572932234611361, 2.3413619256261735, 0.4376672056356824}},
+                                          {}},
+                                         {{{4.4000000000000004, 2.1499999999999999, 0.4376672056356824},
+                                           {5.5999999999999996, 2.1499999999999999, 0.4376672056356824},
+                                           {5.5999999999999996, 2.4499999999999997, 0.4376672056356824}},
+                                          {}}};
   const Vec3 x{5.3348592325979034, 2.3582929418263285, 0.47423669369112009};
   const Vec3 normal{-0.15134912922527982, 0.85834356710944382, -0.49024459393713371};
   const PointFormFactor with = ask(polygons, x, normal, {}), without = ask(polygons, x, normal, {2});
   EXPECT_NEAR(with.F, without.F, with.error + without.error);
 }
 
-// A tall screen crosses the source's plane above the horizon's other side: what it has in front of the source lies below the
-// receiver's horizon, so that it hides nothing.
+// A tall screen crosses the source's plane above the horizon's other side: what it has in front of the source lies
+// below the receiver's horizon, so that it hides nothing.
 TEST(Viewpoint, OccluderInFrontOnlyBelowTheHorizonHidesNothing) {
   const std::vector<Polygon> polygons = {
       {{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {}},
