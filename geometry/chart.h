@@ -9,8 +9,9 @@
 
 namespace exitance {
 
+/// A box in the chart; empty until extended.
 struct ChartBox {
-  double x0 = -std::numeric_limits<double>::infinity(), x1 = -x0, y0 = x0, y1 = -x0;
+  double x0 = std::numeric_limits<double>::infinity(), x1 = -x0, y0 = x0, y1 = -x0;
 };
 
 /// Directions are projected onto a plane across the middle of the source's cone. Conservative: boxes are widened by
@@ -20,8 +21,9 @@ class Chart {
   template <class Real>
   void centre_on(const Cone<Real>& source) {
     Vec<double> sum;
-    for (const auto& c : source.corners) {
-      if (c.kept && c.length > 0) sum = sum + static_cast<double>(1 / c.length) * rounded(c.w);
+    const Corners<Real>& c = source.corners;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      if (c.is_kept(k) && c.length(k) > 0) sum = sum + static_cast<double>(1 / c.length(k)) * rounded(c.w(k));
     }
     const double length = norm(sum);
     axis_ = length > 0 ? (1 / length) * sum : Vec<double>{0, 0, 1};
@@ -30,30 +32,26 @@ class Chart {
     u_ = cross(axis_, other);
     u_ = (1 / norm(u_)) * u_;
     v_ = cross(axis_, u_);
-    source_ = box_of(source);
-  }
-
-  bool meets_source(const ChartBox& box) const {
-    return source_.x0 <= box.x1 && box.x0 <= source_.x1 && source_.y0 <= box.y1 && box.y0 <= source_.y1;
   }
 
   template <class Real>
   ChartBox box_of(const Cone<Real>& cone) const {
-    ChartBox box{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-                 std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    for (const auto& c : cone.corners) {
-      if (!c.kept) continue;
-      const Vec<double> w = rounded(c.w);
-      const double depth = dot(axis_, w);
-      if (!(depth > 1e-3 * static_cast<double>(c.length))) return {};
-      const double x = dot(u_, w) / depth, y = dot(v_, w) / depth;
-      // With a depth of at least 1e-3 |w| a coordinate is wrong by less than 1e3 · 1e3 · 8 u.
-      box.x0 = std::min(box.x0, x - 1e-9);
-      box.x1 = std::max(box.x1, x + 1e-9);
-      box.y0 = std::min(box.y0, y - 1e-9);
-      box.y1 = std::max(box.y1, y + 1e-9);
+    ChartBox box;
+    const Corners<Real>& c = cone.corners;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      if (c.is_kept(k)) extend(box, rounded(c.w(k)), static_cast<double>(c.length(k)));
     }
     return box;
+  }
+
+  /// Extends a box by a stretch of a cone's edge, its ends as far out as their errors allow.
+  template <class Real>
+  void extend(ChartBox& box, const Cone<Real>& cone, const ConeSide<Real>& edge, const Stretch<Real>& stretch) const {
+    const Vec<double> a = rounded(cone.corners.w(edge.from)), e = rounded(cone.corners.w(edge.to)) - a;
+    const double reach = static_cast<double>(cone.corners.length(edge.from) + cone.corners.length(edge.to));
+    for (const Real& t : {Real(stretch.lo - stretch.lo_error), Real(stretch.hi + stretch.hi_error)}) {
+      extend(box, a + std::clamp(static_cast<double>(t), 0.0, 1.0) * e, reach);
+    }
   }
 
   /// Keeps the box of item i; items are set in order.
@@ -65,31 +63,45 @@ class Chart {
     y1_.push_back(box.y1);
   }
 
-  /// Calls f(j), ascending, for every item j ≠ i of the first n whose box meets item i's.
+  /// Calls f(j), ascending, for items j ≠ i of the first n whose box meets the box, until one says true.
   template <class F>
-  void for_each_overlap(std::size_t i, std::size_t n, const F& f) const {
-    constexpr std::size_t kBlock = 16;
-    const double a0 = x0_[i], a1 = x1_[i], b0 = y0_[i], b1 = y1_[i];
-    for (std::size_t first = 0; first < n; first += kBlock) {
-      const std::size_t last = std::min(n, first + kBlock);
-      std::uint8_t meets[kBlock] = {};
+  void until_overlap(const ChartBox& box, std::size_t i, std::size_t n, const F& f) const {
+    const double a0 = box.x0, a1 = box.x1, b0 = box.y0, b1 = box.y1;
+    for (std::size_t first = 0; first < n; first += kLanes) {
+      const std::size_t last = std::min(n, first + kLanes);
+      std::uint8_t meets[kLanes] = {};
       for (std::size_t j = first; j < last; ++j) {
         meets[j - first] = (x0_[j] <= a1) & (a0 <= x1_[j]) & (y0_[j] <= b1) & (b0 <= y1_[j]);
       }
       for (std::size_t j = first; j < last; ++j) {
-        if (meets[j - first] != 0 && j != i) f(j);
+        if (meets[j - first] != 0 && j != i && f(j)) return;
       }
     }
   }
 
  private:
+  /// `size`: at least |w|, and as large as the numbers that w was computed from.
+  void extend(ChartBox& box, const Vec<double>& w, double size) const {
+    const double depth = dot(axis_, w);
+    if (!(depth > 1e-3 * size)) {
+      constexpr double kInfinity = std::numeric_limits<double>::infinity();
+      box = {-kInfinity, kInfinity, -kInfinity, kInfinity};
+      return;
+    }
+    // With a depth of at least 1e-3 of the size a coordinate is wrong by less than 1e3 · 1e3 · 16 u.
+    const double scale = 1 / depth, x = dot(u_, w) * scale, y = dot(v_, w) * scale;
+    box.x0 = std::min(box.x0, x - 1e-8);
+    box.x1 = std::max(box.x1, x + 1e-8);
+    box.y0 = std::min(box.y0, y - 1e-8);
+    box.y1 = std::max(box.y1, y + 1e-8);
+  }
+
   template <class Real>
   static Vec<double> rounded(const Vec<Real>& a) {
     return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
   }
 
   Vec<double> axis_, u_, v_;
-  ChartBox source_;
   std::vector<double> x0_, x1_, y0_, y1_;
 };
 

@@ -3,10 +3,18 @@
 // values are held in a number type Real (double, or extended precision) with proven error bounds; signs are always
 // exact.
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <type_traits>
 #include <vector>
 
+#include "geometry/lanes.h"
 #include "geometry/predicates.h"
 
 namespace exitance {
@@ -57,15 +65,69 @@ template <class Real>
 struct Stretch {
   Real lo{0}, hi{1}, lo_error{0}, hi_error{0};
   bool empty = false;  ///< by an exact decision
+
+  /// Whether nothing was narrowed of the other.
+  bool is_all_of(const Stretch& other) const {
+    return lo == other.lo && hi == other.hi && lo_error == other.lo_error && hi_error == other.hi_error;
+  }
 };
 
+/// Corners as seen from the point of view.
 template <class Real>
-struct ConeCorner {
-  Vec<Real> w;       ///< from the point of view
-  Real length{};     ///< |w|
-  Real error{0};     ///< bound of |error of w| beyond the rounding of the difference of input coordinates
-  bool kept = true;  ///< a corner of the cone; false where a clip cut it off and only an edge's line still needs it
-  ViewPoint exact;
+class Corners {
+ public:
+  struct alignas(64) Block {
+    std::array<Real, kLanes> x, y, z;  ///< w, from the point of view
+    std::array<Real, kLanes> length;   ///< |w|
+    std::array<Real, kLanes> error;    ///< bound of |error of w| beyond the rounding of the difference of input points
+    /// 1 for a corner of the cone, 0 where a clip cut it off and only an edge's line still needs it.
+    SignBytes kept = 0;
+    SignBytes horizon = 0;  ///< signs against the receiver's horizon, where they were asked for
+  };
+
+  std::size_t size() const { return exact_.size(); }
+  std::size_t block_count() const { return blocks_.size(); }
+  Block& block(std::size_t b) { return blocks_[b]; }
+  const Block& block(std::size_t b) const { return blocks_[b]; }
+  /// Of a block: 1 for every corner that there is.
+  SignBytes present(std::size_t b) const {
+    const std::size_t n = size() - b * kLanes;
+    return n >= kLanes ? kOnes : kOnes & ((SignBytes{1} << (8 * n)) - 1);
+  }
+
+  Vec<Real> w(std::size_t k) const {
+    const Block& b = blocks_[k / kLanes];
+    return {b.x[k % kLanes], b.y[k % kLanes], b.z[k % kLanes]};
+  }
+  const Real& length(std::size_t k) const { return blocks_[k / kLanes].length[k % kLanes]; }
+  const Real& error(std::size_t k) const { return blocks_[k / kLanes].error[k % kLanes]; }
+  bool is_kept(std::size_t k) const { return sign_byte(blocks_[k / kLanes].kept, k % kLanes) != 0; }
+  void set_kept(std::size_t k, bool keep) { set_sign_byte(blocks_[k / kLanes].kept, k % kLanes, keep ? 1 : 0); }
+  ViewPoint& exact(std::size_t k) { return exact_[k]; }
+  const ViewPoint& exact(std::size_t k) const { return exact_[k]; }
+
+  /// n corners, all kept, their numbers still to be set.
+  void resize(std::size_t n) {
+    exact_.resize(n);
+    blocks_.resize((n + kLanes - 1) / kLanes);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) blocks_[b].kept = present(b);
+  }
+  void add(const Vec<Real>& w, const Real& w_error, const ViewPoint& point) {
+    const std::size_t k = size(), lane = k % kLanes;
+    if (lane == 0) blocks_.emplace_back();
+    exact_.push_back(point);
+    set_kept(k, true);
+    Block& b = blocks_.back();
+    b.x[lane] = w.x;
+    b.y[lane] = w.y;
+    b.z[lane] = w.z;
+    b.length[lane] = norm(w);
+    b.error[lane] = w_error;
+  }
+
+ private:
+  std::vector<Block> blocks_;
+  std::vector<ViewPoint> exact_;
 };
 
 template <class Real>
@@ -78,18 +140,12 @@ struct ConeSide {
   std::uint32_t from = 0, to = 0;      ///< corners
   Stretch<Real> stretch;               ///< of the edge between them that bounds the cone
   std::uint32_t across = 0xffffffffu;  ///< facet that shares the edge; none: kNone
-  bool below_horizon = false;          ///< neither corner is above the receiver's horizon
 };
 
 template <class Real>
 struct Cone {
-  std::vector<ConeCorner<Real>> corners;
+  Corners<Real> corners;
   std::vector<ConeSide<Real>> sides;
-
-  void clear() {
-    corners.clear();
-    sides.clear();
-  }
 };
 
 /// Unit roundoff of the number type: 2^-53 for double.
@@ -98,83 +154,240 @@ Real roundoff() {
   return std::numeric_limits<Real>::epsilon() / 2;
 }
 
-/// The plane through x and the edge between two corners. w has relative error u in each component, so has their
-/// difference e when taken from the input; the cross product w × e adds two roundings: each component is wrong by at
-/// most 4.01 u |w||e| (Cauchy–Schwarz on its two products), the vector by √3 times that, 7 u |w||e|. Its product with
-/// w_v adds at most (1 + 3.01) u |w||e||w_v|: 11 u in all; 12 covers the rounding of the bound.
+/// What belongs to an edge and the point of view: |w| of its first corner, and the plane through both (ConeSide). N: a
+/// number, or Doubles for several edges at once.
+template <class N>
+struct EdgePlane {
+  N from_length, length, error, sweep;
+  Vec<N> m;
+};
+
 template <class Real>
-void set_edge_plane(ConeSide<Real>& side, const Vec3& x, const ConeCorner<Real>& c, const ConeCorner<Real>& d,
-                    int sign) {
-  const Vec<Real> e = difference<Real>(*d.exact.a, *c.exact.a);
-  const Vec<Real>& w = c.length < d.length ? c.w : d.w;
-  side.m = sign > 0 ? cross(w, e) : cross(e, w);
-  side.length = norm(side.m);
-  side.error = 12 * roundoff<Real>() * (c.length < d.length ? c.length : d.length) * norm(e);
-  side.exact = {ViewPlane::Kind::edge, sign, c.exact.a, d.exact.a, {}};
-  // dθ/dt = |m| / |w(t)|², and the nearest that the edge comes is |m| / |e| when its foot lies between its corners.
-  const Real length = norm(e);
-  const bool foot_between = dot(c.w, e) < 0 && dot(d.w, e) > 0;
-  const Real nearest = foot_between ? Real(side.length / length) : (c.length < d.length ? c.length : d.length);
-  side.sweep = side.length / (nearest * nearest);
-  if constexpr (std::is_same_v<Real, double>) {
-    if (side.error > 0x1p-44 * side.length) {  // the edge's line passes near x
-      const Vec3 m = sign * exact_cross(x, *c.exact.a, *d.exact.a);
-      side.m = {m.x, m.y, m.z};
-      side.length = norm(side.m);
-      side.error = 8 * kRoundoff * side.length;  // 2^-50 of each component, and u in each of w
+Real square_root(const Real& v) {
+  return sqrt(v);
+}
+
+/// Of an edge e from corner `from` to corner `to`, both as seen from x. m = w × e, times `sign`, with w the nearer
+/// corner.
+///
+/// w has relative error u in each component, so has the edge e when taken from the input; the cross product w × e adds
+/// two roundings: each component is wrong by at most 4.01 u |w||e| (Cauchy–Schwarz on its two products), the vector by
+/// √3 times that, 7 u |w||e|. Its product with w_v adds at most (1 + 3.01) u |w||e||w_v|: 11 u in all; 12 covers the
+/// rounding of the bound.
+///
+/// dθ/dt = |m| / |w(t)|², and the nearest that the edge comes is |m| / |e| when its foot lies between its corners.
+template <class Real, class N>
+[[gnu::always_inline]] inline EdgePlane<N> edge_plane(const Vec<N>& from, const Vec<N>& to, const Vec<N>& e, int sign) {
+  EdgePlane<N> plane;
+  plane.from_length = square_root(dot(from, from));
+  const N to_length = square_root(dot(to, to));
+  const auto from_nearer = plane.from_length < to_length;
+  const Vec<N> w{from_nearer ? from.x : to.x, from_nearer ? from.y : to.y, from_nearer ? from.z : to.z};
+  const N near = from_nearer ? plane.from_length : to_length;
+  const Vec<N> m = cross(w, e);
+  const Real s = Real(sign);
+  plane.m = {s * m.x, s * m.y, s * m.z};
+  const N square = dot(m, m), e_square = dot(e, e);
+  plane.length = square_root(square);
+  plane.error = Real(12 * roundoff<Real>()) * near * square_root(e_square);
+  const auto foot_between = (dot(from, e) < Real(0)) & (dot(to, e) > Real(0));
+  const N foot_square = square / e_square, near_square = near * near;
+  plane.sweep = plane.length / (foot_between ? foot_square : near_square);
+  return plane;
+}
+
+/// Sets the cone of a polygon of input points, a side from each corner to the next; it runs so that
+/// sign · det(c − x, d − x, v − x) is positive inside.
+template <class Real>
+void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop, int sign, bool on_source) {
+  const std::size_t n = loop.size();
+  Corners<Real>& corners = cone.corners;
+  corners.resize(n);
+  cone.sides.resize(n);
+  std::array<Real, kLanes> from_x{}, from_y{}, from_z{}, to_x{}, to_y{}, to_z{}, e_x{}, e_y{}, e_z{}, m_x, m_y, m_z,
+      length, error, sweep;
+  for (std::size_t first = 0; first < n; first += kLanes) {
+    const std::size_t used = std::min(kLanes, n - first);
+    for (std::size_t k = 0; k < used; ++k) {
+      const Vec3 &p = *loop[first + k], &q = *loop[first + k + 1 < n ? first + k + 1 : 0];
+      from_x[k] = Real(p.x) - Real(x.x);
+      from_y[k] = Real(p.y) - Real(x.y);
+      from_z[k] = Real(p.z) - Real(x.z);
+      to_x[k] = Real(q.x) - Real(x.x);
+      to_y[k] = Real(q.y) - Real(x.y);
+      to_z[k] = Real(q.z) - Real(x.z);
+      e_x[k] = Real(q.x) - Real(p.x);
+      e_y[k] = Real(q.y) - Real(p.y);
+      e_z[k] = Real(q.z) - Real(p.z);
+      corners.exact(first + k) = {ViewPoint::Kind::vertex, on_source, 0, &p, nullptr};
+    }
+    auto& c = corners.block(first / kLanes);
+    c.x = from_x;
+    c.y = from_y;
+    c.z = from_z;
+    c.error.fill(Real(0));
+    if constexpr (std::is_same_v<Real, double>) {
+      const auto vectors = [](const auto& vx, const auto& vy, const auto& vz) {
+        return Vec<Doubles>{load(vx.data()), load(vy.data()), load(vz.data())};
+      };
+      const auto plane =
+          edge_plane<double>(vectors(from_x, from_y, from_z), vectors(to_x, to_y, to_z), vectors(e_x, e_y, e_z), sign);
+      store(plane.from_length, c.length.data());
+      store(plane.m.x, m_x.data());
+      store(plane.m.y, m_y.data());
+      store(plane.m.z, m_z.data());
+      store(plane.length, length.data());
+      store(plane.error, error.data());
+      store(plane.sweep, sweep.data());
+    } else {
+      for (std::size_t k = 0; k < used; ++k) {
+        const auto plane =
+            edge_plane<Real>(Vec<Real>{from_x[k], from_y[k], from_z[k]}, Vec<Real>{to_x[k], to_y[k], to_z[k]},
+                             Vec<Real>{e_x[k], e_y[k], e_z[k]}, sign);
+        c.length[k] = plane.from_length;
+        m_x[k] = plane.m.x;
+        m_y[k] = plane.m.y;
+        m_z[k] = plane.m.z;
+        length[k] = plane.length;
+        error[k] = plane.error;
+        sweep[k] = plane.sweep;
+      }
+    }
+    for (std::size_t k = 0; k < used; ++k) {
+      ConeSide<Real>& side = cone.sides[first + k];
+      side.m = {m_x[k], m_y[k], m_z[k]};
+      side.length = length[k];
+      side.error = error[k];
+      side.sweep = sweep[k];
+      side.from = static_cast<std::uint32_t>(first + k);
+      side.to = static_cast<std::uint32_t>(first + k + 1 < n ? first + k + 1 : 0);
+      side.exact = {ViewPlane::Kind::edge, sign, loop[side.from], loop[side.to], nullptr};
+      side.stretch = {};
+      side.across = 0xffffffffu;
+      if constexpr (std::is_same_v<Real, double>) {
+        if (side.error > 0x1p-44 * side.length) {  // the edge's line passes near x
+          const Vec3 m = sign * exact_cross(x, *side.exact.c, *side.exact.d);
+          side.m = {m.x, m.y, m.z};
+          side.length = norm(side.m);
+          side.error = 8 * kRoundoff * side.length;  // 2^-50 of each component, and u in each of w
+        }
+      }
     }
   }
 }
 
 /// The side's functional at a corner, from exact arithmetic.
 template <class Real>
-Signed<Real> refined_value_at(const ConeSide<Real>& side, const ConeCorner<Real>& corner, const ViewFrame& frame,
+Signed<Real> refined_value_at(const ConeSide<Real>& side, const ViewPoint& corner, const ViewFrame& frame,
                               StageCounts& counts) {
-  const ExactValue v = exact_value_at(frame, side.exact, corner.exact, counts);
+  const ExactValue v = exact_value_at(frame, side.exact, corner, counts);
   // A value that underflows still has its sign.
   if (v.sign != 0 && v.value == 0) return {v.sign * std::numeric_limits<Real>::min(), Real(1), v.sign};
   return {Real(v.value), Real(v.error), v.sign};
 }
 
-/// The side's functional at a corner, its sign exact.
+/// Values of a side's functional at the corners of a cone, with bounds of their errors and exact signs.
 template <class Real>
-Signed<Real> value_at(const ConeSide<Real>& side, const ConeCorner<Real>& corner, const ViewFrame& frame,
-                      StageCounts& counts) {
-  using std::fabs;
-  Signed<Real> s{dot(side.m, corner.w), side.error * corner.length + (side.length + side.error) * corner.error, 0};
-  if (s.value > s.error || s.value < -s.error) {
-    ++counts.filter;
-    s.sign = s.value > 0 ? 1 : -1;
-    return s;
+class Row {
+ public:
+  void fill(const ConeSide<Real>& side, const Corners<Real>& corners, const ViewFrame& frame, StageCounts& counts) {
+    const std::size_t n = corners.block_count();
+    if (blocks_.size() < n) blocks_.resize(n);
+    kept_positive_ = kept_negative_ = not_positive_ = not_negative_ = 0;
+    for (std::size_t b = 0; b < n; ++b) {
+      const SignBytes present = corners.present(b), kept = corners.block(b).kept;
+      Block& row = blocks_[b];
+      filter(side, corners, b, row);
+      const SignBytes unsure = zero_bytes(row.signs) & present;
+      if (unsure != 0) decide(unsure, side, corners, b, row, frame, counts);
+      counts.filter += static_cast<std::uint64_t>(std::popcount(present & ~unsure));
+      const SignBytes positive = positive_bytes(row.signs), negative = negative_bytes(row.signs);
+      kept_positive_ |= positive & kept;
+      kept_negative_ |= negative & kept;
+      not_positive_ |= present & ~positive;
+      not_negative_ |= present & ~negative;
+    }
   }
-  const bool own_vertex = side.exact.kind == ViewPlane::Kind::edge && corner.exact.kind == ViewPoint::Kind::vertex &&
-                          (*side.exact.c == *corner.exact.a || *side.exact.d == *corner.exact.a);
-  return own_vertex ? Signed<Real>{} : refined_value_at(side, corner, frame, counts);
-}
+
+  int sign(std::size_t k) const { return sign_byte(blocks_[k / kLanes].signs, k % kLanes); }
+  Signed<Real> at(std::size_t k) const {
+    const Block& b = blocks_[k / kLanes];
+    return {b.value[k % kLanes], b.error[k % kLanes], sign_byte(b.signs, k % kLanes)};
+  }
+
+  /// Whether some corner of the cone, those that were cut off left aside, has the sign.
+  bool any_positive() const { return kept_positive_ != 0; }
+  bool any_negative() const { return kept_negative_ != 0; }
+  /// Whether all corners, cut off or not, have the sign.
+  bool all_positive() const { return not_positive_ == 0; }
+  bool all_negative() const { return not_negative_ == 0; }
+
+ private:
+  struct alignas(64) Block {
+    std::array<Real, kLanes> value, error;
+    SignBytes signs = 0;
+  };
+
+  /// Values, errors and those signs that are certain.
+  static void filter(const ConeSide<Real>& side, const Corners<Real>& corners, std::size_t b, Block& row) {
+    const auto& c = corners.block(b);
+    if constexpr (std::is_same_v<Real, double>) {
+      const Doubles value = side.m.x * load(c.x.data()) + side.m.y * load(c.y.data()) + side.m.z * load(c.z.data());
+      const Doubles error = side.error * load(c.length.data()) + (side.length + side.error) * load(c.error.data());
+      store(value, row.value.data());
+      store(error, row.error.data());
+      row.signs = certain_signs(value, error);
+    } else {
+      row.signs = 0;
+      for (std::size_t k = 0; k < std::min(kLanes, corners.size() - b * kLanes); ++k) {
+        row.value[k] = side.m.x * c.x[k] + side.m.y * c.y[k] + side.m.z * c.z[k];
+        row.error[k] = side.error * c.length[k] + (side.length + side.error) * c.error[k];
+        set_sign_byte(row.signs, k, row.value[k] > row.error[k] ? 1 : row.value[k] < -row.error[k] ? -1 : 0);
+      }
+    }
+  }
+
+  static void decide(SignBytes unsure, const ConeSide<Real>& side, const Corners<Real>& corners, std::size_t b,
+                     Block& row, const ViewFrame& frame, StageCounts& counts) {
+    for_each_byte(unsure, [&](std::size_t k) {
+      const ViewPoint& corner = corners.exact(b * kLanes + k);
+      const bool own_vertex = side.exact.kind == ViewPlane::Kind::edge && corner.kind == ViewPoint::Kind::vertex &&
+                              (*side.exact.c == *corner.a || *side.exact.d == *corner.a);
+      const auto s = own_vertex ? Signed<Real>{} : refined_value_at(side, corner, frame, counts);
+      row.value[k] = s.value;
+      row.error[k] = s.error;
+      set_sign_byte(row.signs, k, s.sign);
+    });
+  }
+
+  std::vector<Block> blocks_;
+  SignBytes kept_positive_ = 0, kept_negative_ = 0, not_positive_ = 0, not_negative_ = 0;
+};
 
 /// Narrows the stretch to where the linear function from a (at 0) to b (at 1) is positive. Both zero is the caller's
 /// case. refine(): called to make a and b more exact when the error of the crossing exceeds `bearable`.
 template <class Real, class Refine>
-void narrow(Stretch<Real>& stretch, Signed<Real>& a, Signed<Real>& b, const Real& bearable, const Refine& refine) {
+void narrow(Stretch<Real>& stretch, Signed<Real> a, Signed<Real> b, const Real& bearable, const Refine& refine) {
   using std::fabs;
   if (a.sign <= 0 && b.sign <= 0) {
     stretch.empty = true;
   } else if (a.sign * b.sign < 0) {
     // t = |a| / (|a| + |b|): |δt| ≤ (|b| δa + |a| δb) / (|a| + |b|)² to first order; where the errors are not small
     // against the sum, all is open.
-    const auto error_of_crossing = [&] {
+    Real t, error;
+    const auto find_crossing = [&] {
       const Real size_a = fabs(a.value), size_b = fabs(b.value), span = size_a + size_b;
-      return 100 * (a.error + b.error) < span
-                 ? Real(Real(1.05) * (size_b / span * a.error + size_a / span * b.error) / span)
-                 : Real(1);
+      const Real part = 1 / span;
+      t = size_a * part;
+      error = 100 * (a.error + b.error) < span ? Real(Real(1.05) * (size_b * part * a.error + t * b.error) * part)
+                                               : Real(1);
     };
-    Real error = error_of_crossing();
+    find_crossing();
     if (error > bearable) {
-      refine();
-      error = error_of_crossing();
+      refine(a, b);
+      find_crossing();
     }
-    error += 3 * roundoff<Real>();
-    const Real t = fabs(a.value) / (fabs(a.value) + fabs(b.value));
+    error += 5 * roundoff<Real>();
     if (a.sign > 0) {
       if (t - error < stretch.hi + stretch.hi_error && error > stretch.hi_error) stretch.hi_error = error;
       if (t < stretch.hi) stretch.hi = t;
@@ -197,18 +410,15 @@ void clip(Cone<Real>& cone, const std::vector<Signed<Real>>& weight, ViewPoint::
   bool inside = true;
   std::uint32_t exit = 0;
   std::vector<ConeSide<Real>> sides;
+  Corners<Real>& corners = cone.corners;
 
   const auto crossing = [&](const ConeSide<Real>& side, const Stretch<Real>& s, const Real& t) {
-    const ConeCorner<Real>&a = cone.corners[side.from], &b = cone.corners[side.to];
-    ConeCorner<Real> c;
-    const Vec<Real> e = b.w - a.w;
-    c.w = a.w + t * e;
-    c.length = norm(c.w);
+    const Vec<Real> a = corners.w(side.from), e = corners.w(side.to) - a;
     const Real dt = s.lo_error > s.hi_error ? s.lo_error : s.hi_error;
-    c.error = norm(e) * dt + 8 * roundoff<Real>() * (a.length + b.length);
-    c.exact = {kind, a.exact.on_source, weight[side.from].sign, a.exact.a, b.exact.a};
-    cone.corners.push_back(c);
-    return static_cast<std::uint32_t>(cone.corners.size() - 1);
+    const Real error = norm(e) * dt + 8 * roundoff<Real>() * (corners.length(side.from) + corners.length(side.to));
+    const ViewPoint p = corners.exact(side.from), q = corners.exact(side.to);
+    corners.add(a + t * e, error, {kind, p.on_source, weight[side.from].sign, p.a, q.a});
+    return static_cast<std::uint32_t>(corners.size() - 1);
   };
   const auto close = [&](std::uint32_t from, std::uint32_t to) {
     sides.push_back(closing);
@@ -220,8 +430,7 @@ void clip(Cone<Real>& cone, const std::vector<Signed<Real>>& weight, ViewPoint::
     ConeSide<Real> side = cone.sides[(start + k) % n];
     const Signed<Real>&a = weight[side.from], &b = weight[side.to];
     if (a.sign * b.sign < 0) {
-      Signed<Real> from = a, to = b;
-      narrow(side.stretch, from, to, Real(1), [] {});
+      narrow(side.stretch, a, b, Real(1), [](auto&, auto&) {});
       const std::uint32_t point = crossing(side, side.stretch, inside ? side.stretch.hi : side.stretch.lo);
       if (!inside) close(exit, point);
       exit = point;
@@ -238,7 +447,7 @@ void clip(Cone<Real>& cone, const std::vector<Signed<Real>>& weight, ViewPoint::
       sides.push_back(side);
     }
   }
-  for (std::uint32_t i = 0; i < n; ++i) cone.corners[i].kept = weight[i].sign >= 0;
+  for (std::uint32_t i = 0; i < n; ++i) corners.set_kept(i, weight[i].sign >= 0);
   cone.sides = std::move(sides);
 }
 

@@ -19,14 +19,18 @@ class LambertSum {
     using std::fabs;
     const Real u = roundoff<Real>();
     const ConeSide<Real>& side = *arc.side;
-    const ConeCorner<Real>&p = arc.cone->corners[side.from], &q = arc.cone->corners[side.to];
+    const Corners<Real>& corners = arc.cone->corners;
+    const std::uint32_t from = side.from, to = side.to;
+    const Vec<Real> p = corners.w(from);
+    const Real p_length = corners.length(from);
     const bool of_vertices = side.exact.kind == ViewPlane::Kind::edge;
-    const Vec<Real> e = of_vertices ? difference<Real>(*q.exact.a, *p.exact.a) : q.w - p.w;
+    const Vec<Real> e =
+        of_vertices ? difference<Real>(*corners.exact(to).a, *corners.exact(from).a) : corners.w(to) - p;
     const Real e_length = norm(e);
-    const Vec<Real> w0 = p.w + arc.t0 * e, w1 = p.w + arc.t1 * e;
+    const Vec<Real> w0 = p + arc.t0 * e, w1 = p + arc.t1 * e;
     const Real length0 = norm(w0), length1 = norm(w1);
     // For an edge of input vertices |p × e| is the length of the side's normal.
-    const Real C = of_vertices ? side.length : norm(cross(p.w, e));
+    const Real C = of_vertices ? side.length : norm(cross(p, e));
     const Real S = (arc.t1 - arc.t0) * C, D = dot(w0, w1);
     const Real theta = atan2(S, D);
     const Real g = dot(n_, side.m) / (n_length_ * side.length);
@@ -35,9 +39,9 @@ class LambertSum {
     // δw: three roundings on parts no longer than |p| + |e|, and what the corners carry. δC: that of the side's normal,
     // or 7 u |p||e| and the corners'. δθ ≤ (δS + δD) / (|w0||w1|), as S² + D² = |w0|²|w1|²; 1.1 covers the second
     // order, which the comparison at the end keeps small. δg ≤ 1.1 δm / |m| and 8 roundings.
-    const Real corner = p.error + q.error;
-    const Real dw = 4 * u * (p.length + e_length) + corner;
-    const Real dC = of_vertices ? side.error : Real(8 * u * p.length * e_length + corner * (e_length + p.length));
+    const Real corner = corners.error(from) + corners.error(to);
+    const Real dw = 4 * u * (p_length + e_length) + corner;
+    const Real dC = of_vertices ? side.error : Real(8 * u * p_length * e_length + corner * (e_length + p_length));
     const Real product = length0 * length1;
     Real dtheta = ((arc.t1 - arc.t0) * dC + 4 * u * S) / product + dw * (1 / length0 + 1 / length1) + 8 * u;
     // An end that is wrong by δt moves by |dw/dt| δt across, seen under C / |w|².

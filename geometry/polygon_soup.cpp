@@ -115,7 +115,7 @@ void PolygonSoup::add_facets(std::span<const Polygon> polygons) {
           vertices_.push_back(point);
           for (int axis = 0; axis < 3; ++axis) extent_ = std::max(extent_, std::fabs(point[axis]));
         }
-        corners_.push_back({place->second, kNone});
+        corners_.push_back({point, place->second, kNone});
       }
       facets_.push_back(f);
     }
@@ -262,6 +262,21 @@ void PolygonSoup::build_index() {
     if (shells_[s].convex) boxes[facets_.size() + s] = shells_[s].box;
   }
   index_ = SpatialIndex(boxes);
+}
+
+void PolygonSoup::prefetch(std::span<const std::uint32_t> items) const {
+  constexpr std::size_t kLine = 64;
+  const auto fetch = [](const void* first, std::size_t size) {
+    for (std::size_t k = 0; k < size; k += kLine) __builtin_prefetch(static_cast<const char*>(first) + k);
+  };
+  for (const std::uint32_t item : items) {
+    if (item < facets_.size()) fetch(&facets_[item], sizeof(Facet));
+  }
+  for (const std::uint32_t item : items) {
+    if (item >= facets_.size()) continue;
+    const Facet& f = facets_[item];
+    fetch(&corners_[f.first], f.count * sizeof(Corner));
+  }
 }
 
 bool PolygonSoup::covers(std::uint32_t t, std::uint32_t f) const {

@@ -39,7 +39,7 @@ struct Plane {
 int side_of(const Plane& plane, const Vec3& v, StageCounts& counts);
 
 /// A convex, exactly planar piece of a polygon.
-struct Facet {
+struct alignas(64) Facet {
   std::uint32_t first = 0;  ///< of its corners
   std::uint32_t count = 0;
   std::uint32_t polygon = 0;    ///< index of the input polygon
@@ -48,6 +48,7 @@ struct Facet {
 };
 
 struct Corner {
+  Vec3 at;  ///< vertices()[vertex], here once more because searches for occluders read little else
   std::uint32_t vertex = 0;
   std::uint32_t neighbour =
       kNone;  ///< the one facet across the edge from this corner to the next; kNone: none, or several
@@ -106,6 +107,10 @@ class PolygonSoup {
   /// Of all that occludes: item k is facet k, or shell k − facets().size() where that is convex; the facets of convex
   /// shells are not items themselves.
   const SpatialIndex& index() const { return index_; }
+
+  /// Asks for the memory of items of the index before it is needed: a search in a large scene meets items that nothing
+  /// has looked at for long, and then spends most of its time waiting for one after the other.
+  void prefetch(std::span<const std::uint32_t> items) const;
 
   /// Largest absolute coordinate.
   double extent() const { return extent_; }

@@ -47,8 +47,8 @@ NT functional_at_vertex(const ViewFrame& frame, const ViewPlane& plane, const Ve
     case ViewPlane::Kind::horizon:
       return horizon_value<NT>(frame.x, frame.normal, v);
     default: {
-      const NT first = plane_value<NT>(frame.S, frame.x) * plane_value<NT>(plane.T, v);
-      return on_source ? first : first - plane_value<NT>(plane.T, frame.x) * plane_value<NT>(frame.S, v);
+      const NT first = plane_value<NT>(frame.S, frame.x) * plane_value<NT>(*plane.T, v);
+      return on_source ? first : first - plane_value<NT>(*plane.T, frame.x) * plane_value<NT>(frame.S, v);
     }
   }
 }
@@ -105,6 +105,16 @@ std::optional<int> certain_sign(double value, double bound) {
   return std::nullopt;
 }
 
+/// Whether the plane through x and an edge holds the vertex for all to see: all four lie in one plane across an axis,
+/// or the edge and the vertex on one line along an axis. In buildings nearly all zeros are of these kinds.
+bool is_zero_at_sight(const Vec3& x, const ViewPlane& plane, const ViewPoint& point) {
+  if (plane.kind != ViewPlane::Kind::edge || point.kind != ViewPoint::Kind::vertex) return false;
+  const Vec3 &c = *plane.c, &d = *plane.d, &v = *point.a;
+  const bool x_same = c.x == d.x && c.x == v.x, y_same = c.y == d.y && c.y == v.y, z_same = c.z == d.z && c.z == v.z;
+  return (x_same && y_same) || (y_same && z_same) || (z_same && x_same) || (x_same && x.x == v.x) ||
+         (y_same && x.y == v.y) || (z_same && x.z == v.z);
+}
+
 }  // namespace
 
 std::optional<int> orientation_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& v) {
@@ -150,6 +160,10 @@ int horizon_side(const Vec3& x, const Vec3& normal, const Vec3& v, StageCounts& 
 }
 
 ExactValue exact_value_at(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& point, StageCounts& counts) {
+  if (is_zero_at_sight(frame.x, plane, point)) {
+    ++counts.filter;
+    return {};
+  }
   {
     const Interval::Protector rounding;
     Interval span;

@@ -53,9 +53,9 @@ struct ViewPlane {
     cut  ///< S(x) T(v) − T(x) S(v), through the line in which the planes S (the source's) and T (an occluder's) meet
   };
   Kind kind = Kind::edge;
-  int sign = 1;  ///< factor that makes the functional positive inside
-  const Vec3 *c = nullptr, *d = nullptr;
-  PlanePoints T;
+  int sign = 1;                           ///< factor that makes the functional positive inside
+  const Vec3 *c = nullptr, *d = nullptr;  ///< of an edge
+  const PlanePoints* T = nullptr;         ///< of a cut
 };
 
 /// A point: an input vertex a, or the point in which the edge ab crosses the horizon or the source's plane S,

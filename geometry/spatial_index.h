@@ -45,9 +45,10 @@ struct HalfSpace {
   double offset = 0;
 };
 
-/// Bounding volume hierarchy with four children a node, split by the surface area heuristic. Searches are conservative:
-/// nothing that meets the region is left out, some that does not may be returned. Items with an empty box are never
-/// found. The same boxes give the same tree.
+/// Bounding volume hierarchy with eight children a node, split by the surface area heuristic. Searches are
+/// conservative: nothing that meets the region is left out, some that does not may be returned: boxes are held in
+/// single precision, relative to the bounds of all. Items with an empty box are never found. The same boxes give the
+/// same tree.
 class SpatialIndex {
  public:
   SpatialIndex() = default;
@@ -63,15 +64,22 @@ class SpatialIndex {
   const Box& bounds() const { return bounds_; }
 
  private:
+  static constexpr std::size_t kWidth = 8;
   struct alignas(64) Node {
-    std::array<std::array<double, 4>, 3> lower, upper;  ///< [axis][child]
-    std::array<std::int32_t, 4> child;  ///< ≥ 0: a node; < 0: item −1 − child; unused places have an empty box
+    std::array<std::array<float, kWidth>, 3> lower, upper;  ///< [axis][child], rounded outward
+    std::array<std::int32_t, kWidth> child;  ///< ≥ 0: a node; < 0: item −1 − child; unused places have an empty box
   };
 
   std::int32_t build(std::span<std::uint32_t> items, std::span<const Box> boxes, int depth);
 
+  /// (v − centre) / size, along one axis: between −1 and 1 for all that is in the bounds, with a rounding error below
+  /// 2^-50 times 1 + |v / size|.
+  double scaled(double v, int axis) const { return (v - centre_[axis]) * per_size_; }
+
   std::vector<Node> nodes_;
   Box bounds_;
+  Vec3 centre_;
+  double per_size_ = 1;  ///< a power of two, so that no box loses anything but by the shift
 };
 
 }  // namespace exitance

@@ -128,6 +128,7 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   for (const Vec3* v : corners) box.extend(*v);
   found.clear();
   soup.index().find(half_spaces, box, found);
+  soup.prefetch(found);
 
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
   for (const std::uint32_t item : found) {
@@ -283,8 +284,8 @@ std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {
   const Extended height = dot(normal, difference<Extended>(*plane.a, s.view.receiver().point));
   s.fine.for_each_arc([&](const Arc<Extended>& arc) {
     if (!(arc.t0 < arc.t1)) return;
-    const auto& p = arc.cone->corners[arc.side->from].w;
-    const auto e = arc.cone->corners[arc.side->to].w - p;
+    const auto p = arc.cone->corners.w(arc.side->from);
+    const auto e = arc.cone->corners.w(arc.side->to) - p;
     const auto point = [&](const Extended& t) {
       const auto w = p + t * e;
       const Extended scale = arc.of_source ? Extended(1) : Extended(height / dot(normal, w));

@@ -20,11 +20,10 @@
 #include <algorithm>
 #include <deque>
 #include <span>
-#include <utility>
 
 #include "geometry/chart.h"
 #include "geometry/cone.h"
-#include "geometry/view.h"
+#include "geometry/view_cones.h"
 
 namespace exitance {
 
@@ -46,15 +45,12 @@ struct Occluder {
 template <class Real>
 class VisibleRegion {
  public:
-  /// Corners of a polygon, input points.
-  using Corners = std::span<const Vec3* const>;
-
-  explicit VisibleRegion(View& view) : view_(view), soup_(view.soup()) {}
+  explicit VisibleRegion(View& view) : view_(view), soup_(view.soup()), cones_(view) {}
 
   /// Starts on a source in a facet's plane, seen from the view's point, which lies strictly on side `facing` (±1) of
   /// that plane. Its corners run counter-clockwise seen from the facet's front; `horizon`: the sign of each against the
   /// receiver's horizon. False when no part of it is above the horizon.
-  bool set_source(std::uint32_t facet, int facing, Corners corners, std::span<const int> horizon);
+  bool set_source(std::uint32_t facet, int facing, PointLoop loop, std::span<const int> horizon);
 
   /// How wrong [rad] the end of an arc may be before exact arithmetic is asked; at first 2^-46.
   void set_bearable_angle(double angle) { bearable_angle_ = angle; }
@@ -97,24 +93,37 @@ class VisibleRegion {
   };
 
   Effect add_facet(std::uint32_t facet);
-  Effect add_cone(Added& added);
-
-  /// Of corners that run counter-clockwise seen from the front: seen from there, det(c − x, d − x, v − x) is negative
-  /// inside, so that sign is −1 where x is in front.
-  void set_cone(Cone<Real>& cone, Corners corners, int sign, bool on_source);
-  const Cone<Real>& cone_of_facet(std::uint32_t facet);
-  const Cone<Real>& cone_of_shell(std::uint32_t shell);
-  void set_facet_cone(Cone<Real>& cone, std::uint32_t facet);
-  void drop_below_horizon(Cone<Real>& cone);
-  Cone<Real>* cached(std::uint32_t item, bool& is_new);
+  template <class Drops>
+  Effect add_cone(Added& added, const Drops& drops);
+  bool goes_on(const ConeSide<Real>& side, const Facet& occluder, int facing, bool covers);
 
   Signed<Real> plane_value(const Plane& plane, const Vec3& v, int sign) const;
   ConeSide<Real> closing_cut(const Plane& T, int facing_occluder) const;
-  void cover(const Added& a, const Added& b, bool b_first);
-  /// row_: values of a side's functional at the corners of another cone.
-  void fill_row(const ConeSide<Real>& side, const Cone<Real>& cone);
-  bool lies_in(const ConeSide<Real>& edge) const { return row_[edge.from].sign == 0 && row_[edge.to].sign == 0; }
-  void narrow_along(Stretch<Real>& stretch, const Cone<Real>& cone, const ConeSide<Real>& edge,
+  bool cover(const Added& a, const Added& b, bool b_first);
+
+  struct FacedPlane {
+    const Plane& plane;
+    int facing;
+  };
+  struct PlaneSides {
+    bool in_front = false, behind = false;
+  };
+  template <class Own>
+  PlaneSides sides_of(const FacedPlane& faced, const Corners<Real>& corners, std::size_t n, const Own& own);
+  bool is_one_of(const Vec3& v, std::span<const Corner> loop) const {
+    return std::any_of(loop.begin(), loop.end(), [&](const Corner& c) { return c.at == v; });
+  }
+  bool is_one_of(const Vec3& v, std::span<const Vec3* const> loop) const {
+    return std::any_of(loop.begin(), loop.end(), [&](const Vec3* c) { return *c == v; });
+  }
+
+  void fill(Row<Real>& row, const ConeSide<Real>& side, const Cone<Real>& cone) {
+    row.fill(side, cone.corners, frame_, view_.counts());
+  }
+  static bool lies_in(const Row<Real>& row, const ConeSide<Real>& edge) {
+    return row.sign(edge.from) == 0 && row.sign(edge.to) == 0;
+  }
+  void narrow_along(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone, const ConeSide<Real>& edge,
                     const ConeSide<Real>& side);
 
   template <class Sink>
@@ -123,6 +132,7 @@ class VisibleRegion {
 
   View& view_;
   const PolygonSoup& soup_;
+  ViewCones<Real> cones_;
   ViewFrame frame_;
   std::uint32_t source_facet_ = kNone;
   const Plane* source_plane_ = nullptr;
@@ -133,68 +143,41 @@ class VisibleRegion {
   std::size_t count_ = 0;
   std::vector<std::vector<Stretch<Real>>> covered_source_;  // by source side
   std::vector<std::vector<Stretch<Real>>> covered_;         // by side of the occluder being finished
-  std::vector<Signed<Real>> row_, weight_;
-  std::vector<Stretch<Real>> within_;
-  std::vector<const Vec3*> corners_;
-  std::vector<int> corner_sides_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> ring_;
+  Row<Real> row_;
+  std::vector<Row<Real>> source_rows_;  // of each of the source's sides, at the occluder that is being added
+  std::vector<Signed<Real>> weight_;
+  std::vector<Stretch<Real>> within_, open_;
+  std::vector<const Vec3*> loop_;  // of the source
   Chart chart_;
-
-  // Cones of the current view, kept because every occluder is met on the way to many sources.
-  struct Slot {
-    std::uint32_t epoch = 0, cone = 0;
-  };
-  std::vector<Slot> slots_;  // by facet, then by shell
-  std::deque<Cone<Real>> cones_;
-  std::uint32_t cones_epoch_ = 0, cones_used_ = 0;
 };
 
 template <class Real>
-void VisibleRegion<Real>::set_cone(Cone<Real>& cone, Corners corners, int sign, bool on_source) {
-  cone.clear();
-  const auto n = static_cast<std::uint32_t>(corners.size());
-  for (const Vec3* v : corners) {
-    ConeCorner<Real> c;
-    c.w = difference<Real>(*v, frame_.x);
-    c.length = norm(c.w);
-    c.exact = {ViewPoint::Kind::vertex, on_source, 0, v, nullptr};
-    cone.corners.push_back(c);
-  }
-  for (std::uint32_t k = 0; k < n; ++k) {
-    ConeSide<Real> side;
-    side.from = k;
-    side.to = (k + 1) % n;
-    set_edge_plane(side, frame_.x, cone.corners[side.from], cone.corners[side.to], sign);
-    cone.sides.push_back(side);
-  }
-}
-
-template <class Real>
-bool VisibleRegion<Real>::set_source(std::uint32_t facet, int facing, Corners corners, std::span<const int> horizon) {
+bool VisibleRegion<Real>::set_source(std::uint32_t facet, int facing, PointLoop loop, std::span<const int> horizon) {
   source_facet_ = facet;
   source_plane_ = &soup_.facets()[facet].plane;
   frame_ = {view_.receiver().point, view_.receiver().normal, source_plane_->points};
   facing_source_ = facing;
   count_ = 0;
   if (std::none_of(horizon.begin(), horizon.end(), [](int s) { return s > 0; })) return false;
-  set_cone(source_, corners, -facing, true);
+  loop_.assign(loop.begin(), loop.end());
+  cones_.set(source_, loop, -facing, true);
   if (std::any_of(horizon.begin(), horizon.end(), [](int s) { return s < 0; })) {
     ConeSide<Real> closing;
     closing.m = {Real(frame_.normal.x), Real(frame_.normal.y), Real(frame_.normal.z)};
     closing.length = norm(closing.m);
     closing.error = 5 * roundoff<Real>() * closing.length;
-    closing.exact = {ViewPlane::Kind::horizon, 1, nullptr, nullptr, {}};
+    closing.exact = {ViewPlane::Kind::horizon, 1, nullptr, nullptr, nullptr};
     weight_.clear();
-    for (std::size_t k = 0; k < corners.size(); ++k) {
+    for (std::size_t k = 0; k < loop.size(); ++k) {
       if (horizon[k] == 0) {
         weight_.push_back({Real(0), Real(0), 0});
         continue;
       }
       // Of corners near the horizon, as of an edge shared with the receiver's surface, rounding would leave only noise.
-      const ConeCorner<Real>& corner = source_.corners[k];
-      const Signed<Real> value{dot(closing.m, corner.w), closing.error * corner.length, horizon[k]};
+      const Corners<Real>& corners = source_.corners;
+      const Signed<Real> value{dot(closing.m, corners.w(k)), closing.error * corners.length(k), horizon[k]};
       const bool is_clear = value.value * horizon[k] > 0x1p20 * value.error;
-      weight_.push_back(is_clear ? value : refined_value_at(closing, corner, frame_, view_.counts()));
+      weight_.push_back(is_clear ? value : refined_value_at(closing, corners.exact(k), frame_, view_.counts()));
     }
     clip(source_, weight_, ViewPoint::Kind::at_horizon, closing);
   }
@@ -236,107 +219,36 @@ ConeSide<Real> VisibleRegion<Real>::closing_cut(const Plane& T, int facing_occlu
   const Real norm_S = norm(n_S), norm_T = norm(n_T), size_S = fabs(S.value), size_T = fabs(t.value);
   side.error = 2 * (size_S * error_T + size_T * error_S + S.error * norm_T + t.error * norm_S +
                     4 * roundoff<Real>() * (size_S * norm_T + size_T * norm_S));
-  side.exact = {ViewPlane::Kind::cut, sign, nullptr, nullptr, T.points};
+  side.exact = {ViewPlane::Kind::cut, sign, nullptr, nullptr, &T.points};
   return side;
 }
 
+/// Narrows a stretch of an edge of a cone to where it is inside of the side whose values at the cone are in the row.
 template <class Real>
-void VisibleRegion<Real>::fill_row(const ConeSide<Real>& side, const Cone<Real>& cone) {
-  row_.clear();
-  for (const auto& c : cone.corners) row_.push_back(value_at(side, c, frame_, view_.counts()));
-}
-
-/// Narrows a stretch of an edge of the cone whose row is filled to where it is inside of the side.
-template <class Real>
-void VisibleRegion<Real>::narrow_along(Stretch<Real>& stretch, const Cone<Real>& cone, const ConeSide<Real>& edge,
-                                       const ConeSide<Real>& side) {
-  narrow(stretch, row_[edge.from], row_[edge.to], Real(bearable_angle_ / (edge.sweep + bearable_angle_ * 0x1p20)), [&] {
-    if constexpr (!std::is_same_v<Real, double>) return;
-    for (const std::uint32_t k : {edge.from, edge.to}) {
-      row_[k] = refined_value_at(side, cone.corners[k], frame_, view_.counts());
-    }
-  });
-}
-
-/// A place for the cone of a facet, or a shell after all facets, in the current view.
-template <class Real>
-Cone<Real>* VisibleRegion<Real>::cached(std::uint32_t item, bool& is_new) {
-  if (slots_.empty()) slots_.resize(soup_.facets().size() + soup_.shells().size());
-  if (cones_epoch_ != view_.epoch()) {
-    cones_epoch_ = view_.epoch();
-    cones_used_ = 0;
-  }
-  Slot& slot = slots_[item];
-  is_new = slot.epoch != cones_epoch_;
-  if (is_new) {
-    slot = {cones_epoch_, cones_used_++};
-    if (cones_.size() < cones_used_) cones_.emplace_back();
-  }
-  return &cones_[slot.cone];
-}
-
-/// Of a cone with a part above the horizon: an edge on or below the horizon bounds nothing, and above the horizon the
-/// cone is the same without it, because the cut of a convex cone by the horizon has its closing side in the horizon
-/// itself.
-template <class Real>
-void VisibleRegion<Real>::drop_below_horizon(Cone<Real>& cone) {
-  std::erase_if(cone.sides, [&](const ConeSide<Real>& side) { return side.below_horizon; });
-}
-
-template <class Real>
-void VisibleRegion<Real>::set_facet_cone(Cone<Real>& cone, std::uint32_t facet) {
-  const Facet& f = soup_.facets()[facet];
-  const auto loop = soup_.corners(f);
-  corners_.clear();
-  for (const Corner& c : loop) corners_.push_back(&soup_.vertices()[c.vertex]);
-  set_cone(cone, corners_, -view_.facing(facet), false);
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    cone.sides[k].across = loop[k].neighbour;
-    cone.sides[k].below_horizon =
-        view_.horizon(loop[k].vertex) <= 0 && view_.horizon(loop[(k + 1) % loop.size()].vertex) <= 0;
-  }
-}
-
-template <class Real>
-const Cone<Real>& VisibleRegion<Real>::cone_of_facet(std::uint32_t facet) {
-  bool is_new = false;
-  Cone<Real>& cone = *cached(facet, is_new);
-  if (is_new) {
-    set_facet_cone(cone, facet);
-    drop_below_horizon(cone);
-  }
-  return cone;
-}
-
-/// The silhouette of a convex shell: the edges between faces that are seen from the front and others.
-template <class Real>
-const Cone<Real>& VisibleRegion<Real>::cone_of_shell(std::uint32_t shell) {
-  bool is_new = false;
-  Cone<Real>& cone = *cached(static_cast<std::uint32_t>(soup_.facets().size()) + shell, is_new);
-  if (!is_new) return cone;
-  ring_.clear();
-  for (const ShellEdge& edge : soup_.shells()[shell].edges) {
-    const bool left = view_.facing(edge.left) > 0, right = view_.facing(edge.right) > 0;
-    if (left != right) ring_.push_back(left ? std::pair(edge.from, edge.to) : std::pair(edge.to, edge.from));
-  }
-  // The edges form one ring: each in turn gets behind it the one that starts where it ends.
-  for (std::size_t k = 0; k + 1 < ring_.size(); ++k) {
-    const auto next = std::find_if(ring_.begin() + static_cast<std::ptrdiff_t>(k) + 1, ring_.end(),
-                                   [&](const auto& e) { return e.first == ring_[k].second; });
-    if (next != ring_.end()) std::swap(ring_[k + 1], *next);
-  }
-  corners_.clear();
-  for (const auto& edge : ring_) corners_.push_back(&soup_.vertices()[edge.first]);
-  set_cone(cone, corners_, -1, false);
-  for (std::size_t k = 0; k < ring_.size(); ++k) {
-    cone.sides[k].below_horizon = view_.horizon(ring_[k].first) <= 0 && view_.horizon(ring_[k].second) <= 0;
-  }
-  drop_below_horizon(cone);
-  return cone;
+void VisibleRegion<Real>::narrow_along(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone,
+                                       const ConeSide<Real>& edge, const ConeSide<Real>& side) {
+  narrow(stretch, row.at(edge.from), row.at(edge.to), Real(bearable_angle_ / (edge.sweep + bearable_angle_ * 0x1p20)),
+         [&](Signed<Real>& a, Signed<Real>& b) {
+           if constexpr (!std::is_same_v<Real, double>) return;
+           a = refined_value_at(side, cone.corners.exact(edge.from), frame_, view_.counts());
+           b = refined_value_at(side, cone.corners.exact(edge.to), frame_, view_.counts());
+         });
 }
 
 template <class Real>
 typename VisibleRegion<Real>::Place VisibleRegion<Real>::place_of(const Shell& shell) {
+  // Of most shells the whole box lies in front and above, clear of the roundings of a sum of products.
+  const Vec3 n = view_.receiver().normal, m = facing_source_ * source_plane_->normal, x = view_.receiver().point;
+  const Vec3 middle = 0.5 * shell.box.lower + 0.5 * shell.box.upper, half = shell.box.upper - middle;
+  const auto least = [&](const Vec3& normal, const Vec3& origin, double normal_error) {
+    const Vec3 size{std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)};
+    const Vec3 w = middle - origin;
+    const double reach = std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z) + half.x + half.y + half.z;
+    const double margin = (2 * normal_error + 0x1p-48 * (size.x + size.y + size.z)) *
+                          (reach + std::fabs(middle.x) + std::fabs(middle.y) + std::fabs(middle.z));
+    return dot(normal, w) - dot(size, half) - margin;
+  };
+  if (least(m, source_plane_->origin, source_plane_->normal_error) > 0 && least(n, x, 0) > 0) return Place::in_front;
   bool in_front = false, behind = false, above = false;
   for (const std::uint32_t v : shell.vertices) {
     above = above || view_.horizon(v) > 0;
@@ -353,10 +265,8 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add(const Occluder& oc
   if (occluder.shell == kNone) return add_facet(occluder.facet);
   if (added_.size() == count_) added_.emplace_back();
   Added& added = added_[count_];
-  added.cone = &cone_of_shell(occluder.shell);
-  added.edges.clear();
-  for (const auto& side : added.cone->sides) added.edges.push_back(side.stretch);
-  return add_cone(added);
+  added.cone = &cones_.of_shell(occluder.shell);
+  return add_cone(added, [](const auto&) { return false; });
 }
 
 template <class Real>
@@ -365,98 +275,112 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
   const Facet& f = facets[facet];
   const int facing = view_.facing(facet);
   if (facing == 0 || facet == source_facet_) return Effect::none;
-  const auto vertices = soup_.vertices();
   const auto loop = soup_.corners(f);
-  if (std::none_of(loop.begin(), loop.end(), [&](const Corner& c) { return view_.horizon(c.vertex) > 0; })) {
-    return Effect::none;
-  }
   const auto coplanar = soup_.coplanar(source_facet_);
+  const bool in_plane = std::binary_search(coplanar.begin(), coplanar.end(), facet);
   const bool covers =
-      std::binary_search(coplanar.begin(), coplanar.end(), facet) &&
-      (facing_source_ > 0 ? soup_.covers(facet, source_facet_) : soup_.covers_back(facet, source_facet_));
-
-  // Which side of the source's plane the occluder's corners lie on (+1: that of x), and of its own plane the source's.
-  bool pierces = false;
-  corner_sides_.assign(loop.size(), 0);
-  if (!covers) {
-    bool in_front = false, behind = false;
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      const Vec3& v = vertices[loop[k].vertex];
-      if (std::any_of(source_.corners.begin(), source_.corners.end(), [&](const auto& c) { return *c.exact.a == v; })) {
-        continue;
-      }
-      const int s = facing_source_ * side_of(*source_plane_, v, view_.counts());
-      corner_sides_[k] = s;
-      in_front = in_front || s > 0;
-      behind = behind || s < 0;
-    }
-    if (!in_front) return Effect::none;
-    bool beyond = false, nearer = false;
-    for (const auto& c : source_.corners) {
-      if (c.exact.kind != ViewPoint::Kind::vertex) continue;
-      const Vec3& v = *c.exact.a;
-      if (std::any_of(loop.begin(), loop.end(), [&](const Corner& k) { return vertices[k.vertex] == v; })) continue;
-      const int s = facing * side_of(f.plane, v, view_.counts());
-      beyond = beyond || s < 0;
-      nearer = nearer || s > 0;
-    }
-    if (!beyond) return Effect::none;
-    pierces = behind && nearer;
-  }
-
+      in_plane && (facing_source_ > 0 ? soup_.covers(facet, source_facet_) : soup_.covers_back(facet, source_facet_));
+  if (in_plane && !covers) return Effect::none;
   if (added_.size() == count_) added_.emplace_back();
   Added& added = added_[count_];
-  added.cone = &cone_of_facet(facet);
+
+  PlaneSides of_source;
+  if (!covers) {
+    of_source = sides_of({f.plane, facing}, source_.corners, loop_.size(), loop);
+    if (!of_source.behind) return Effect::none;
+  }
+  added.cone = &cones_.of_facet(facet);
+  if (!ViewCones<Real>::reaches_above(*added.cone)) return Effect::none;
+  bool pierces = false;
+  if (!covers) {
+    const auto of_occluder = sides_of({*source_plane_, facing_source_}, added.cone->corners, loop.size(), loop_);
+    if (!of_occluder.in_front) return Effect::none;
+    pierces = of_occluder.behind && of_source.in_front;
+  }
   if (pierces) {
-    set_facet_cone(added.clipped, facet);
+    cones_.set_whole(added.clipped, facet);
+    Corners<Real>& corners = added.clipped.corners;
     weight_.clear();
-    for (const auto& c : added.clipped.corners) {
-      weight_.push_back(plane_value(*source_plane_, *c.exact.a, facing_source_));
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      weight_.push_back(plane_value(*source_plane_, *corners.exact(k).a, facing_source_));
     }
     // The corners' weights are S times facing_source_; ViewPoint's weight is S itself.
     clip(added.clipped, weight_, ViewPoint::Kind::at_source_plane, closing_cut(f.plane, facing));
-    for (auto& c : added.clipped.corners) c.exact.sign_at_a *= facing_source_;
+    for (std::size_t k = 0; k < corners.size(); ++k) corners.exact(k).sign_at_a *= facing_source_;
     added.cone = &added.clipped;
   }
-  // An edge whose neighbour faces the same way, and hides something of the source, too, bounds nothing. Of an occluder
-  // that lies in the source's plane, and along an edge in that plane, the neighbour may dive behind it or lie in it.
-  const auto reaches_in_front = [&](std::uint32_t n) {
-    const auto c = soup_.corners(facets[n]);
-    return std::any_of(c.begin(), c.end(), [&](const Corner& k) {
-      return facing_source_ * side_of(*source_plane_, vertices[k.vertex], view_.counts()) > 0;
-    });
-  };
-  added.edges.clear();
-  for (const auto& side : added.cone->sides) {
-    const std::uint32_t n = side.across;
-    bool goes_on = n != kNone && n != source_facet_ && view_.facing(n) == facing;
-    if (goes_on && covers) {
-      goes_on = facets[n].polygon == f.polygon;
-    } else if (goes_on && corner_sides_[side.from] == 0 && corner_sides_[side.to] == 0) {
-      goes_on = reaches_in_front(n);
-    }
-    added.edges.push_back(side.stretch);
-    added.edges.back().empty = goes_on;
-  }
-  return add_cone(added);
+  return add_cone(added, [&](const ConeSide<Real>& side) { return goes_on(side, f, facing, covers); });
 }
 
-/// Meets a cone with the source's: leaves in added.edges what lies within it, and in covered_source_ what it covers.
+/// Whether an occluder goes on across an edge, in a neighbour that faces the same way and hides something of the
+/// source, too: then the edge bounds nothing. Of an occluder that lies in the source's plane, and along an edge in that
+/// plane, the neighbour may dive behind it or lie in it.
 template <class Real>
-typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_cone(Added& added) {
-  const Cone<Real>& cone = *added.cone;
-  const ChartBox box = chart_.box_of(cone);
-  if (!chart_.meets_source(box)) return Effect::none;
+bool VisibleRegion<Real>::goes_on(const ConeSide<Real>& side, const Facet& occluder, int facing, bool covers) {
+  const std::uint32_t n = side.across;
+  if (n == kNone || n == source_facet_ || view_.facing(n) != facing) return false;
+  const Facet& neighbour = soup_.facets()[n];
+  if (covers) return neighbour.polygon == occluder.polygon;
+  const auto loop = soup_.corners(occluder);
+  const auto side_of_source = [&](const Corner& c) {
+    return facing_source_ * side_of(*source_plane_, c.at, view_.counts());
+  };
+  if (side_of_source(loop[side.from]) != 0 || side_of_source(loop[side.to]) != 0) return true;
+  const auto corners = soup_.corners(neighbour);
+  return std::any_of(corners.begin(), corners.end(), [&](const Corner& k) { return side_of_source(k) > 0; });
+}
 
-  // Apart, by a side of the source? And within the source, of each of the occluder's edges, which stretch?
-  for (const auto& side : source_.sides) {
-    fill_row(side, cone);
-    bool apart = true;
-    for (std::size_t k = 0; k < row_.size(); ++k) apart = apart && (row_[k].sign <= 0 || !cone.corners[k].kept);
-    if (apart) return Effect::none;
-    for (std::size_t k = 0; k < cone.sides.size(); ++k) {
-      if (!added.edges[k].empty) narrow_along(added.edges[k], cone, cone.sides[k], side);
+/// On which sides of a facet's plane, seen from the side that it faces, the first n corners of a cone lie, which are
+/// input points. Those that are corners of the facet lie in its plane by identity, those of `own` too.
+template <class Real>
+template <class Own>
+typename VisibleRegion<Real>::PlaneSides VisibleRegion<Real>::sides_of(const FacedPlane& faced,
+                                                                       const Corners<Real>& corners, std::size_t n,
+                                                                       const Own& own) {
+  const Plane& plane = faced.plane;
+  PlaneSides sides;
+  const auto decide = [&](std::size_t k) {
+    const Vec3& v = *corners.exact(k).a;
+    if (is_one_of(v, own)) return;
+    const int s = faced.facing * side_of(plane, v, view_.counts());
+    sides.in_front = sides.in_front || s > 0;
+    sides.behind = sides.behind || s < 0;
+  };
+  if constexpr (std::is_same_v<Real, double>) {
+    // n · w + n · (x − o): the normal is wrong by at most √3 normal_error, w and x − o by u of each component; three
+    // roundings each of the products and one of the sum. |n| ≤ √3 normal_size.
+    const Vec3 to_x = frame_.x - plane.origin, n_faced = faced.facing * plane.normal;
+    const double height = dot(n_faced, to_x), distance = std::fabs(to_x.x) + std::fabs(to_x.y) + std::fabs(to_x.z);
+    const double per_length = 12 * kRoundoff * plane.normal_size + 2 * plane.normal_error;
+    for (std::size_t first = 0; first < n; first += kLanes) {
+      const auto& c = corners.block(first / kLanes);
+      const Doubles value =
+          n_faced.x * load(c.x.data()) + n_faced.y * load(c.y.data()) + n_faced.z * load(c.z.data()) + height;
+      const SignBytes signs = certain_signs(value, per_length * (load(c.length.data()) + distance));
+      const SignBytes asked = n - first >= kLanes ? kOnes : kOnes & ((SignBytes{1} << (8 * (n - first))) - 1);
+      sides.in_front = sides.in_front || (positive_bytes(signs) & asked) != 0;
+      sides.behind = sides.behind || (negative_bytes(signs) & asked) != 0;
+      if (!sides.in_front || !sides.behind) {
+        for_each_byte(zero_bytes(signs) & asked, [&](std::size_t k) { decide(first + k); });
+      }
     }
+  } else {
+    for (std::size_t k = 0; k < n; ++k) decide(k);
+  }
+  return sides;
+}
+
+/// Meets a cone with the source's: leaves in added.edges what lies within it, of edges of which drops(side) is not
+/// true, and in covered_source_ what it covers.
+template <class Real>
+template <class Drops>
+typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_cone(Added& added, const Drops& drops) {
+  const Cone<Real>& cone = *added.cone;
+  // Apart, by a side of the source?
+  if (source_rows_.size() < source_.sides.size()) source_rows_.resize(source_.sides.size());
+  for (std::size_t k = 0; k < source_.sides.size(); ++k) {
+    fill(source_rows_[k], source_.sides[k], cone);
+    if (!source_rows_[k].any_positive()) return Effect::none;
   }
 
   // Apart, by a side of the occluder? And of each of the source's edges, which stretch does it cover?
@@ -464,19 +388,14 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_cone(Added& added)
   for (const auto& side : source_.sides) within_.push_back(side.stretch);
   bool whole = true;
   for (const auto& side : cone.sides) {
-    fill_row(side, source_);
-    bool apart = true;
-    int side_of_source = 0;
-    for (std::size_t k = 0; k < row_.size(); ++k) {
-      if (!source_.corners[k].kept) continue;
-      apart = apart && row_[k].sign <= 0;
-      whole = whole && row_[k].sign >= 0;
-      if (row_[k].sign != 0) side_of_source = row_[k].sign;
-    }
-    if (apart) return Effect::none;
+    fill(row_, side, source_);
+    if (!row_.any_positive()) return Effect::none;
+    if (row_.all_positive()) continue;
+    whole = whole && !row_.any_negative();
     for (std::size_t k = 0; k < source_.sides.size(); ++k) {
-      if (within_[k].empty || (lies_in(source_.sides[k]) && side_of_source > 0)) continue;
-      narrow_along(within_[k], source_, source_.sides[k], side);
+      // An edge that lies in the side's plane is covered by the occluder, who lies on the source's side of it.
+      if (within_[k].empty || lies_in(row_, source_.sides[k])) continue;
+      narrow_along(within_[k], row_, source_, source_.sides[k], side);
     }
   }
   if (whole) return Effect::whole;
@@ -484,39 +403,58 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_cone(Added& added)
   for (std::size_t k = 0; k < source_.sides.size(); ++k) {
     if (!within_[k].empty) covered_source_[k].push_back(within_[k]);
   }
-  added.bounds = std::any_of(added.edges.begin(), added.edges.end(), [](const auto& e) { return !e.empty; });
-  chart_.set(count_, box);
+
+  // Of each of the occluder's edges, which stretch lies within the source?
+  added.edges.clear();
+  added.bounds = false;
+  for (const auto& edge : cone.sides) {
+    Stretch<Real> stretch = edge.stretch;
+    for (std::size_t k = 0; k < source_.sides.size() && !stretch.empty; ++k) {
+      if (!source_rows_[k].all_positive()) narrow_along(stretch, source_rows_[k], cone, edge, source_.sides[k]);
+    }
+    stretch.empty = stretch.empty || drops(edge);
+    added.bounds = added.bounds || !stretch.empty;
+    added.edges.push_back(stretch);
+  }
+  chart_.set(count_, chart_.box_of(cone));
   ++count_;
   return Effect::part;
 }
 
-/// Adds to covered_ the stretches of a's bounding edges that b covers on their outer sides, or stands for.
+/// Adds to covered_ the stretches of a's edges, those of `open_`, that b covers on their outer sides, or stands for.
+/// False when no edge of a is left that is not surely covered from end to end.
 template <class Real>
-void VisibleRegion<Real>::cover(const Added& a, const Added& b, bool b_first) {
+bool VisibleRegion<Real>::cover(const Added& a, const Added& b, bool b_first) {
   const Cone<Real>& cone = *a.cone;
-  within_.assign(a.edges.begin(), a.edges.end());
+  const std::size_t n = cone.sides.size();
+  within_ = open_;
+  std::size_t left = n;
   for (const auto& side : b.cone->sides) {
-    fill_row(side, cone);
-    int side_of_a = 0;
-    bool out_of_reach = true;
-    for (std::size_t k = 0; k < row_.size(); ++k) {
-      if (row_[k].sign >= 0) out_of_reach = false;
-      if (cone.corners[k].kept && row_[k].sign != 0) side_of_a = row_[k].sign;
-    }
-    if (out_of_reach) return;
-    for (std::size_t k = 0; k < cone.sides.size(); ++k) {
+    fill(row_, side, cone);
+    if (row_.all_positive()) continue;
+    if (row_.all_negative()) return true;
+    left = 0;
+    for (std::size_t k = 0; k < n; ++k) {
       if (within_[k].empty) continue;
-      if (lies_in(cone.sides[k])) {
+      if (lies_in(row_, cone.sides[k])) {
         // On one line. On opposite sides of it b covers a's outer side; on the same side, the first stands for both.
-        if (side_of_a > 0 && !b_first) within_[k].empty = true;
+        if (row_.any_positive() && !b_first) within_[k].empty = true;
       } else {
-        narrow_along(within_[k], cone, cone.sides[k], side);
+        narrow_along(within_[k], row_, cone, cone.sides[k], side);
       }
+      left += !within_[k].empty;
     }
+    if (left == 0) return true;
   }
-  for (std::size_t k = 0; k < cone.sides.size(); ++k) {
-    if (!within_[k].empty) covered_[k].push_back(within_[k]);
+  bool any_open = false;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!within_[k].empty) {
+      covered_[k].push_back(within_[k]);
+      open_[k].empty = within_[k].is_all_of(open_[k]);
+    }
+    any_open = any_open || !open_[k].empty;
   }
+  return any_open;
 }
 
 template <class Real>
@@ -555,9 +493,14 @@ void VisibleRegion<Real>::for_each_arc(const Sink& sink) {
     const std::size_t n = a.edges.size();
     if (covered_.size() < n) covered_.resize(n);
     for (std::size_t k = 0; k < n; ++k) covered_[k].clear();
-    chart_.for_each_overlap(i, count_, [&](std::size_t j) { cover(a, added_[j], j < i); });
+    open_ = a.edges;
+    ChartBox box;
     for (std::size_t k = 0; k < n; ++k) {
-      if (!a.edges[k].empty) finish_edge(*a.cone, a.cone->sides[k], a.edges[k], covered_[k], false, sink);
+      if (!open_[k].empty) chart_.extend(box, *a.cone, a.cone->sides[k], open_[k]);
+    }
+    chart_.until_overlap(box, i, count_, [&](std::size_t j) { return !cover(a, added_[j], j < i); });
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!open_[k].empty) finish_edge(*a.cone, a.cone->sides[k], a.edges[k], covered_[k], false, sink);
     }
   }
 }
