@@ -39,13 +39,17 @@ struct Viewpoint::State {
   bool add_candidate(const Occluder& occluder);
   bool hidden_by_recent();
   bool find_candidates(std::uint32_t facet);
+  bool add_items(std::span<const std::uint32_t> items);
   bool prepare(const Source& source, int& source_facing);
   bool put_occluders(const Source& source, int source_facing);
   Candidates& candidates_of(std::uint32_t facet) { return recent[facet % recent.size()]; }
   template <class Real>
   bool add_candidates(std::uint32_t facet);
+  bool put_items(const Source& source, int source_facing, std::span<const std::uint32_t> items);
   template <class Real>
   PointFormFactor sum(PointFormFactor result);
+  template <class Put>
+  PointFormFactor answer(const Source& source, double tolerance, const Put& put);
 
   const PolygonSoup& soup;
   View view;
@@ -129,9 +133,13 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   found.clear();
   soup.index().find(half_spaces, box, found);
   soup.prefetch(found);
+  return add_items(found);
+}
 
+/// Adds items of the index; false when they hide all of the current source.
+bool Viewpoint::State::add_items(std::span<const std::uint32_t> items) {
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
-  for (const std::uint32_t item : found) {
+  for (const std::uint32_t item : items) {
     if (item < facets) {
       if (!add_candidate({item, kNone})) return false;
       continue;
@@ -227,6 +235,37 @@ bool Viewpoint::State::put_occluders(const Source& source, int source_facing) {
   return !candidates.blocked && add_candidates<double>(source.facet);
 }
 
+/// Sets the current source, prepared, and adds the items; false when they hide all of it.
+bool Viewpoint::State::put_items(const Source& source, int source_facing, std::span<const std::uint32_t> items) {
+  Candidates& candidates = candidates_of(source.facet);
+  candidates.facet = kNone;  // what is kept here holds for this piece only
+  candidates.occluders.clear();
+  set_source<double>(source.facet, source_facing);
+  return add_items(items);
+}
+
+/// `put` puts what may hide something of the source, prepared and seen from the side it is told; false: all is hidden.
+template <class Put>
+PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance, const Put& put) {
+  region.set_bearable_angle(std::max(0x1p-46, tolerance / 16));
+  PointFormFactor result;
+  int source_facing = 0;
+  const bool above = prepare(source, source_facing);
+  result.side = source_facing > 0 ? Side::front : source_facing < 0 ? Side::back : Side::edge_on;
+  if (!above) return result;
+  if (view.covered() || !put(source_facing)) {
+    result.visibility = Visibility::blocked;
+    return result;
+  }
+  const PointFormFactor plain = sum<double>(result);
+  if (plain.error <= tolerance) return plain;
+  ++extended;
+  set_source<Extended>(source.facet, source_facing);
+  add_candidates<Extended>(source.facet);
+  const PointFormFactor exact = sum<Extended>(result);
+  return exact.error < plain.error ? exact : plain;
+}
+
 Viewpoint::Viewpoint(const PolygonSoup& soup) : state_(std::make_unique<State>(soup)) {}
 Viewpoint::~Viewpoint() = default;
 Viewpoint::Viewpoint(Viewpoint&&) noexcept = default;
@@ -247,28 +286,11 @@ bool Viewpoint::covered() const {
 }
 
 PointFormFactor Viewpoint::form_factor(const Source& source, double tolerance) {
-  State& s = *state_;
-  s.region.set_bearable_angle(std::max(0x1p-46, tolerance / 16));
-  PointFormFactor result;
-  int source_facing = 0;
-  const bool above = s.prepare(source, source_facing);
-  result.side = source_facing > 0 ? Side::front : source_facing < 0 ? Side::back : Side::edge_on;
-  if (!above) return result;
-  if (s.view.covered()) {
-    result.visibility = Visibility::blocked;
-    return result;
-  }
-  if (!s.put_occluders(source, source_facing)) {
-    result.visibility = Visibility::blocked;
-    return result;
-  }
-  const PointFormFactor plain = s.sum<double>(result);
-  if (plain.error <= tolerance) return plain;
-  ++s.extended;
-  s.set_source<Extended>(source.facet, source_facing);
-  s.add_candidates<Extended>(source.facet);
-  const PointFormFactor fine = s.sum<Extended>(result);
-  return fine.error < plain.error ? fine : plain;
+  return state_->answer(source, tolerance, [&](int facing) { return state_->put_occluders(source, facing); });
+}
+
+PointFormFactor Viewpoint::form_factor(const Source& source, std::span<const std::uint32_t> items, double tolerance) {
+  return state_->answer(source, tolerance, [&](int facing) { return state_->put_items(source, facing, items); });
 }
 
 std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {

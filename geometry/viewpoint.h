@@ -61,6 +61,9 @@ class Viewpoint {
   /// prove an error within `tolerance`, it is computed again with 80 digits; what can be proven then is in `error`.
   PointFormFactor form_factor(const Source& source, double tolerance = 1e-13);
 
+  /// The same where it is known what may stand between: items of the soup's index, ascending. Others are not looked for.
+  PointFormFactor form_factor(const Source& source, std::span<const std::uint32_t> items, double tolerance);
+
   /// The boundary of the visible part of the source above the horizon, in no particular order.
   std::vector<BoundaryPiece> visible_region(const Source& source);
 

@@ -2,47 +2,53 @@
 
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/special_functions/legendre.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "geometry/predicates.h"
 
 namespace exitance {
 namespace {
 
+/// Gauss–Legendre on [0, 1], ascending.
 struct Rule {
-  std::vector<double> node, weight;  ///< on [0, 1]
+  std::vector<double> node, weight;
+  std::vector<double> legendre;  ///< [k * order + i]: (2k + 1) P_k at node i, P_k on [0, 1]
 };
 
 template <unsigned Order>
 Rule make_rule() {
   using Gauss = boost::math::quadrature::gauss<double, Order>;
-  Rule rule;
-  const auto add = [&](double x, double w) {
-    rule.node.push_back(0.5 * (1 + x));
-    rule.weight.push_back(0.5 * w);
-  };
+  std::vector<std::pair<double, double>> places;
   for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {
     const double x = Gauss::abscissa()[k], w = Gauss::weights()[k];
-    add(x, w);
-    if (x != 0) add(-x, w);
+    places.emplace_back(0.5 * (1 + x), 0.5 * w);
+    if (x != 0) places.emplace_back(0.5 * (1 - x), 0.5 * w);
+  }
+  std::sort(places.begin(), places.end());
+  Rule rule;
+  for (const auto& [node, weight] : places) {
+    rule.node.push_back(node);
+    rule.weight.push_back(weight);
+  }
+  for (unsigned k = 0; k < Order; ++k) {
+    for (const double x : rule.node) {
+      rule.legendre.push_back((2 * k + 1) * boost::math::legendre_p(static_cast<int>(k), 2 * x - 1));
+    }
   }
   return rule;
 }
 
+template <unsigned... Less>
+std::array<Rule, sizeof...(Less)> make_rules(std::integer_sequence<unsigned, Less...>) {
+  return {make_rule<Less + 2>()...};
+}
+
 const Rule& rule_of(int order) {
-  static const Rule three = make_rule<3>(), four = make_rule<4>(), six = make_rule<6>(), eight = make_rule<8>();
-  switch (order) {
-    case 3:
-      return three;
-    case 4:
-      return four;
-    case 6:
-      return six;
-    case 8:
-      return eight;
-    default:
-      throw std::invalid_argument("gauss_points: order must be 3, 4, 6 or 8");
-  }
+  static const auto rules = make_rules(std::make_integer_sequence<unsigned, kHighestOrder - 1>());
+  if (order < 2 || order > kHighestOrder) throw std::invalid_argument("gauss_points: order must be 2 to 12");
+  return rules[static_cast<std::size_t>(order - 2)];
 }
 
 /// Most and least of a plane's functional over a cell, less than rounding taken as zero.
@@ -50,10 +56,10 @@ struct Range {
   double below = 0, above = 0, rounding = 0;
 };
 
-Range range_of(const AreaCell& cell, const CutPlane& plane) {
+Range range_of(std::span<const Vec3> loop, const CutPlane& plane) {
   Range r;
   double size = 0;
-  for (const Vec3& v : cell.loop()) {
+  for (const Vec3& v : loop) {
     const double d = plane.at(v);
     r.below = std::min(r.below, d);
     r.above = std::max(r.above, d);
@@ -85,15 +91,15 @@ std::vector<AreaCell> cells_of(std::span<const Vec3> loop) {
   return cells;
 }
 
-bool crosses(const AreaCell& cell, const CutPlane& plane) {
-  return crosses(range_of(cell, plane));
+bool crosses(std::span<const Vec3> loop, const CutPlane& plane) {
+  return crosses(range_of(loop, plane));
 }
 
 std::vector<AreaCell> cut(const AreaCell& cell, const CutPlane& plane) {
-  const Range range = range_of(cell, plane);
+  const auto loop = cell.loop();
+  const Range range = range_of(loop, plane);
   if (!crosses(range)) return {};
   std::vector<Vec3> above, below;
-  const auto loop = cell.loop();
   for (std::size_t k = 0; k < loop.size(); ++k) {
     const Vec3 &a = loop[k], &b = loop[(k + 1) % loop.size()];
     const double da = plane.at(a), db = plane.at(b);
@@ -148,6 +154,41 @@ void gauss_points(const AreaCell& cell, int order, std::vector<WeightedPoint>& p
       points.push_back({a + s * ab + t * along_t, rule.weight[i] * rule.weight[j] * norm(cross(along_s, along_t))});
     }
   }
+}
+
+Truncation truncation_of(std::span<const double> weighted, int order) {
+  const Rule& rule = rule_of(order);
+  const auto n = static_cast<std::size_t>(order);
+  // c_kl = Σ_ij P_k(i) P_l(j) weighted_ij, where c_00 is the integral.
+  std::array<double, kHighestOrder * kHighestOrder> half{};
+  std::array<double, kHighestOrder> ring{};
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t i = 0; i < n; ++i) half[k * n + j] += rule.legendre[k * n + i] * weighted[i * n + j];
+    }
+  }
+  double size = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t l = 0; l < n; ++l) {
+      double c = 0;
+      for (std::size_t j = 0; j < n; ++j) c += rule.legendre[l * n + j] * half[k * n + j];
+      const std::size_t r = std::max(k, l);
+      ring[r] = std::max(ring[r], std::fabs(c));
+      size = std::max(size, ring[r]);
+    }
+  }
+  if (size == 0) return {};
+  // Rings of even or of odd order vanish by symmetry: what the last but one lets expect of the last counts, too.
+  const auto rate = [&](double from, double to, std::size_t steps) {
+    return std::pow(std::min(1.0, to / from), 1 / static_cast<double>(steps));
+  };
+  const double tiny = 1e-17 * size, before = std::max(ring[n - 2], tiny);
+  double last = std::max(ring[n - 1], tiny);
+  if (n > 2) last = std::max(last, before * rate(size, before, n - 2));
+  // The fall from ring to ring, over two of them at the end and on the whole: the slower one counts.
+  double fall = rate(size, last, n - 1);
+  if (n > 3) fall = std::max(fall, rate(std::max(ring[n - 3], tiny), last, 2));
+  return {2 * last * std::pow(fall, static_cast<double>(n + 1)), fall};
 }
 
 }  // namespace exitance

@@ -32,8 +32,8 @@ std::vector<AreaCell> cells_of(std::span<const Vec3> loop);
 /// Cuts a cell by a plane; nothing where the plane leaves it whole up to rounding.
 std::vector<AreaCell> cut(const AreaCell& cell, const CutPlane& plane);
 
-/// Whether cut() would cut.
-bool crosses(const AreaCell& cell, const CutPlane& plane);
+/// Whether the plane has part of a convex loop on each side, by more than rounding: then cut() would cut.
+bool crosses(std::span<const Vec3> loop, const CutPlane& plane);
 
 /// Halves a cell across its longer side.
 std::pair<AreaCell, AreaCell> bisect(const AreaCell& cell);
@@ -43,8 +43,22 @@ struct WeightedPoint {
   double weight = 0;  ///< all weights of a rule sum to the cell's area
 };
 
-/// Product Gauss rule of `order` points along each side: 3, 4, 6 or 8. The square is mapped bilinearly onto the cell; a
-/// triangle is a quadrilateral with a double corner. All points lie in the cell's interior.
+/// Product Gauss rule of 2 … kHighestOrder points along each side. The square is mapped bilinearly onto the cell; a
+/// triangle is a quadrilateral with a double corner. All points lie in the cell's interior. Point i · order + j has
+/// place i along the one side of the square and j along the other.
 void gauss_points(const AreaCell& cell, int order, std::vector<WeightedPoint>& points);
+
+inline constexpr int kHighestOrder = 12;
+
+struct Truncation {
+  double error = 0;
+  double fall = 0;  ///< at most 1: what the error is multiplied by for every half order more
+};
+
+/// What a product Gauss rule knows of its own error, from the integrand times weight at its points alone. Their
+/// expansion in products of Legendre polynomials ends in a ring of highest order; how fast the rings fall tells what
+/// comes behind. An analytic function's coefficients fall as ρ^-k, and the rule of order n errs by less than those of
+/// order 2n; twice as much is given. Of a function with a kink the rings hardly fall, which the figure shows.
+Truncation truncation_of(std::span<const double> weighted, int order);
 
 }  // namespace exitance

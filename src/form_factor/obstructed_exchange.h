@@ -1,0 +1,61 @@
+#pragma once
+// What two polygons exchange past others, by integrating over one of them what its points see of the other.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/viewpoint.h"
+#include "src/form_factor/visual_events.h"
+
+namespace exitance {
+
+/// ∫ F(x → visible part of the source) dA over the receiver, refined on demand. The integrand is analytic but for visual
+/// events, so that cells are cut along those first; each is then integrated by a product Gauss rule, whose order rises,
+/// and which is halved where that does not help: beside events of three edges, shared edges and contacts. Where events
+/// are still uncut, a share of what could be seen at most is part of the error, because no rule notices what happens
+/// between its points. Deterministic.
+class ObstructedExchange {
+ public:
+  /// Receiver and source: pieces of two facets. items: what may stand between, of the soup's index, ascending.
+  /// `most`: bound of the form factor from any point of the receiver to the source.
+  ObstructedExchange(const PolygonSoup& soup, const Source& receiver, const Source& source,
+                     std::span<const std::uint32_t> items, double most);
+
+  /// Refines until error() ≤ tolerance [m²] or `points` points have been looked from in all; one that needs extended
+  /// precision counts for several.
+  void refine(Viewpoint& view, double tolerance, std::uint64_t points);
+
+  double integral() const;  ///< [m²]
+  double error() const;     ///< [m²] estimate of |integral − true| that is meant to hold
+  std::uint64_t points() const { return points_; }
+
+ private:
+  struct Cell {
+    AreaCell shape;
+    int order = 0;  ///< of the rule that measured it; 0: none did
+    double fall = 1;
+    std::vector<std::uint32_t> uncut;  ///< events that concern it
+    double integral = 0, error = 0, point_error = 0;
+  };
+
+  void measure(Viewpoint& view, Cell& cell, int order, double tolerance);
+  std::vector<Cell> parts_of(const Cell& cell) const;
+  void cut_all();
+
+  const PolygonSoup* soup_;
+  Source receiver_, source_;
+  std::span<const std::uint32_t> items_;
+  double most_ = 1, area_ = 0;
+  bool complete_ = true;
+  std::vector<VisualEvent> events_;
+  std::vector<Cell> cells_;
+  std::vector<std::uint32_t> heap_;  ///< indices of cells, worst on top
+  bool started_ = false;
+  double running_error_ = 0;
+  std::uint64_t points_ = 0;
+  std::vector<WeightedPoint> scratch_;
+  std::vector<double> weighted_;
+};
+
+}  // namespace exitance
