@@ -1,0 +1,169 @@
+#include "geometry/contour_form_factor.h"
+
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <boost/multiprecision/mpfr.hpp>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "geometry/edge_pair.h"
+
+namespace exitance {
+namespace {
+
+/// 80 decimal digits, 266 bits.
+using Extended =
+    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<80, boost::multiprecision::allocate_stack>,
+                                  boost::multiprecision::et_off>;
+
+/// Roundings that a term of the contour sum carries, relative to what it is made of.
+constexpr double kRoundings = 4;
+
+/// An outline relative to an origin, in units of 2^exponent.
+template <class Real>
+struct Outline {
+  boost::container::small_vector<SpaceEdge<Real>, 8> edges;
+  double displacement = 0;  ///< of a corner, at most
+  double length = 0;
+};
+
+struct Frame {
+  Vec3 origin;
+  int exponent = 0;
+  double extent = 0;  ///< distance of the farthest corner, in units of 2^exponent: 1 to 2
+};
+
+Frame frame_of(const RadiatorFacet& a, const RadiatorFacet& b) {
+  const RadiatorFacet& smaller = a.radius < b.radius ? a : b;
+  Frame frame{smaller.centre, 0, 0};
+  const double reach = std::max(norm(a.centre - frame.origin) + a.radius, norm(b.centre - frame.origin) + b.radius);
+  frame.exponent = std::ilogb(reach);
+  frame.extent = std::ldexp(reach, -frame.exponent);
+  return frame;
+}
+
+template <class Real>
+Outline<Real> outline(const RadiatorFacet& facet, const ClippedLoop& loop, const RadiatorFacet& plane,
+                      const Frame& frame) {
+  using std::ldexp;
+  boost::container::small_vector<Vec<Real>, 8> points;
+  Outline<Real> result;
+  for (const ClippedCorner& corner : loop) {
+    double displacement = 0;
+    Vec<Real> p = position<Real>(facet, corner, plane.plane(), frame.origin, displacement);
+    p = {Real(ldexp(p.x, -frame.exponent)), Real(ldexp(p.y, -frame.exponent)), Real(ldexp(p.z, -frame.exponent))};
+    result.displacement = std::max(result.displacement, std::ldexp(displacement, -frame.exponent));
+    points.push_back(p);
+  }
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Vec<Real>&p = points[k], &q = points[k + 1 < points.size() ? k + 1 : 0];
+    const Vec<Real> e = q - p;
+    const Real length = norm(e);
+    if (!(length > 0)) continue;  // corners that rounding made one
+    result.edges.push_back({p, q, Real(1 / length) * e, length});
+    result.length += static_cast<double>(length);
+  }
+  return result;
+}
+
+/// 1/2π ∮∮ ln r dv·dw, with `tolerance` [m²] to spend on truncation where precision allows.
+template <class Real>
+Exchange contour_exchange(const FacetPair& pair, double tolerance) {
+  using std::fabs;
+  const double u = static_cast<double>(std::numeric_limits<Real>::epsilon());
+  const Frame frame = frame_of(*pair.a, *pair.b);
+  const Outline<Real> a = outline<Real>(*pair.a, pair.of_a, *pair.b, frame),
+                      b = outline<Real>(*pair.b, pair.of_b, *pair.a, frame);
+  const double unit = std::ldexp(1.0, frame.exponent);
+  const double pairs = static_cast<double>(a.edges.size() * b.edges.size());
+  const double bearable = tolerance / unit / unit / pairs, coincidence = 2 * u * frame.extent;
+  Real sum(0);
+  double rounding = 0, truncation = 0;
+  for (const SpaceEdge<Real>& e : a.edges) {
+    for (const SpaceEdge<Real>& f : b.edges) {
+      const Real cosine = dot(e.direction, f.direction);
+      const double share = std::fabs(static_cast<double>(cosine));
+      const double product = static_cast<double>(e.length * f.length);
+      if (share <= 4 * u) {
+        rounding += 4 * share * product;
+        continue;
+      }
+      const double worth = std::max(bearable / share, u * product);
+      const LogIntegral<Real> part = log_integral(e, f, worth, coincidence);
+      sum += cosine * part.value;
+      rounding += u * (kRoundings * share + 2) * part.size;
+      truncation += share * part.truncation;
+    }
+  }
+  // Moving one outline against the other by δ changes the integral by no more than δ times the shorter one's length.
+  const double moved = (a.displacement + b.displacement + 2 * coincidence) * std::min(a.length, b.length);
+  Exchange result;
+  result.integral = std::ldexp(static_cast<double>(sum) / (2 * std::numbers::pi), 2 * frame.exponent);
+  result.error = std::ldexp((rounding + truncation) / (2 * std::numbers::pi) + moved, 2 * frame.exponent) +
+                 4 * kRoundoff * std::fabs(result.integral);
+  return result;
+}
+
+/// A pair of facets on its way to the precision it needs.
+struct Measured {
+  FacetPair pair;
+  Exchange exchange;
+  int stage = 0;
+};
+
+/// Bound of F in either direction between facets that face the same way in nearly one plane: the directions between
+/// them are within δ = |n_a − n_b| of both planes, and those carry δ² at most.
+double bound_between_neighbours(const RadiatorFacet& a, const RadiatorFacet& b) {
+  const double difference = norm(a.normal - b.normal) + 0x1p-47;
+  return difference * difference;
+}
+
+}  // namespace
+
+Exchange unobstructed_exchange(const Radiator& a, const Radiator& b, const ExchangeTolerance& tolerance) {
+  const double smaller = std::min(a.area(), b.area());
+  Exchange total;
+  boost::container::small_vector<Measured, 4> open;
+  for (const RadiatorFacet& f : a.facets()) {
+    for (const RadiatorFacet& g : b.facets()) {
+      Measured m{{&f, &g, clip_in_front(f, g), {}}, {}, 0};
+      if (m.pair.of_a.empty()) continue;
+      m.pair.of_b = clip_in_front(g, f);
+      if (m.pair.of_b.empty()) continue;
+      const double bound = bound_between_neighbours(f, g);
+      if (bound <= tolerance.negligible) {
+        total.error += bound * std::min(f.area, g.area);
+        continue;
+      }
+      const auto apart = separated_exchange(m.pair, 0.1 * tolerance.relative);
+      m.exchange = apart ? *apart : contour_exchange<double>(m.pair, 0);
+      open.push_back(std::move(m));
+    }
+  }
+  const Exchange counted_none = total;
+  for (;;) {
+    total = counted_none;
+    for (const Measured& m : open) {
+      total.integral += m.exchange.integral;
+      total.error += m.exchange.error;
+    }
+    const double wanted = std::max(tolerance.negligible * smaller,
+                                   std::min(tolerance.absolute * smaller, tolerance.relative * total.integral));
+    if (total.error <= wanted) break;
+    const double share = wanted / static_cast<double>(open.size() + 1);
+    bool refined = false;
+    for (Measured& m : open) {
+      if (m.exchange.error <= share || m.stage == 2) continue;
+      refined = true;
+      ++m.stage;
+      m.exchange = m.stage == 1 ? contour_exchange<long double>(m.pair, 0.1 * share)
+                                : contour_exchange<Extended>(m.pair, 0.01 * share);
+    }
+    if (!refined) break;
+  }
+  total.integral = std::max(total.integral, 0.0);
+  return total;
+}
+
+}  // namespace exitance
