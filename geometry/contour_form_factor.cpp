@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/math/constants/constants.hpp>
-#include <boost/multiprecision/mpfr.hpp>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -11,11 +10,6 @@
 
 namespace exitance {
 namespace {
-
-/// 80 decimal digits, 266 bits.
-using Extended =
-    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<80, boost::multiprecision::allocate_stack>,
-                                  boost::multiprecision::et_off>;
 
 /// Roundings that a term of the contour sum carries, relative to what it is made of.
 constexpr double kRoundings = 4;

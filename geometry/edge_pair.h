@@ -1,7 +1,7 @@
 #pragma once
 // The integral of ln r over two straight edges, r the distance between a point of one and a point of the other.
 //
-//  - Edges with a common corner: f = ln r² is homogeneous there up to a constant, so that Euler's theorem turns the
+//  - Edges on lines that meet: from there f = ln r² is homogeneous up to a constant, so that Euler's theorem turns the
 //    integral into two over single edges.
 //  - Parallel edges: the second difference of an elementary function.
 //  - Otherwise the integral along one edge is elementary, and Gauss–Legendre panels do the other. As a function of the
@@ -59,6 +59,30 @@ LogIntegral<Real> from_common_corner(const Real& S, const Real& T, const Real& c
   LogIntegral<Real> result;
   result.value = Real(0.25) * (of_S + of_T) + product * (ln_R - Real(1.5));
   result.size = static_cast<double>(fabs(of_S) + fabs(of_T) + product * (fabs(ln_R) + 2));
+  return result;
+}
+
+/// The same for edges on lines that meet, s from s0 to s1 and t from t0 to t1 in the distance from where they do.
+template <class Real>
+LogIntegral<Real> between_meeting(const std::array<Real, 2>& s, const std::array<Real, 2>& t, const Real& c,
+                                  const Real& sine) {
+  using std::fabs;
+  using std::sqrt;
+  LogIntegral<Real> result;
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t j = 0; j < 2; ++j) {
+      const Real S = fabs(s[i]), T = fabs(t[j]);
+      if (!(S > 0) || !(T > 0)) continue;
+      const bool same_side = (s[i] > 0) == (t[j] > 0);
+      const Real cosine = same_side ? c : Real(-c);
+      const Real along = T - S * cosine, R = sqrt(along * along + S * S * sine * sine);
+      const LogIntegral<Real> part = from_common_corner(S, T, cosine, sine, R);
+      // ∫ from s0 to s1 is that to s1 less that to s0, and one that runs backwards counts negative.
+      const bool positive = (i == j) == same_side;
+      result.value = positive ? Real(result.value + part.value) : Real(result.value - part.value);
+      result.size += part.size;
+    }
+  }
   return result;
 }
 
@@ -228,6 +252,19 @@ LogIntegral<Real> log_integral(const SpaceEdge<Real>& a, const SpaceEdge<Real>& 
   if (same(a.from, b.to)) return corner(false, true);
   if (same(a.to, b.from)) return corner(true, false);
   if (same(a.to, b.to)) return corner(true, true);
+  // Elsewhere lines may meet within the edges or near them; farther away the terms would cancel.
+  if (static_cast<double>(sine) > 0.01) {
+    const Vec<Real> w = b.from - a.from;
+    const Real sine_square = sine * sine;
+    if (static_cast<double>(fabs(dot(w, normal)) / sine) <= coincidence) {
+      const Real s = dot(cross(w, b.direction), normal) / sine_square,
+                 t = dot(cross(w, a.direction), normal) / sine_square;
+      const Real reach_a = s < 0 ? Real(-s) : Real(s - a.length), reach_b = t < 0 ? Real(-t) : Real(t - b.length);
+      if (reach_a < a.length && reach_b < b.length) {
+        return between_meeting<Real>({-s, a.length - s}, {-t, b.length - t}, cosine, sine);
+      }
+    }
+  }
   return a.length < b.length ? by_panels(a, b, tolerance) : by_panels(b, a, tolerance);
 }
 

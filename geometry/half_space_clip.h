@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <boost/container/small_vector.hpp>
+#include <boost/multiprecision/mpfr.hpp>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include "geometry/cone.h"
 #include "geometry/radiator.h"
@@ -23,37 +26,49 @@ using ClippedLoop = boost::container::small_vector<ClippedCorner, 8>;
 /// Every sign is exact. Vertices on the plane are kept, never made anew.
 ClippedLoop clip_in_front(const RadiatorFacet& facet, const RadiatorFacet& plane);
 
-/// det(b − a, c − a, v − a) for the points of a plane with a bound of its error.
+/// 80 decimal digits, 266 bits.
+using Extended =
+    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<80, boost::multiprecision::allocate_stack>,
+                                  boost::multiprecision::et_off>;
+
+/// Where the edge from – to, which a plane separates strictly, meets it: 0 at `from`, 1 at `to`. A value and a bound of
+/// its error; where that exceeds what is bearable in Real, finer arithmetic tells it.
 template <class Real>
-Real plane_functional(const PlanePoints& plane, const Vec3& v, double& error) {
+Real crossing_parameter(const PlanePoints& plane, const Vec3& from, const Vec3& to, double bearable, double& error) {
+  using std::fabs;
+  const double u = static_cast<double>(std::numeric_limits<Real>::epsilon());
   const Vec<Real> p = difference<Real>(*plane.b, *plane.a), q = difference<Real>(*plane.c, *plane.a),
-                  w = difference<Real>(v, *plane.a);
-  const double size = static_cast<double>(norm(p)) * static_cast<double>(norm(q)) * static_cast<double>(norm(w));
-  error = 12 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * size;
-  return dot(cross(p, q), w);
+                  v = difference<Real>(from, *plane.a), w = difference<Real>(to, *plane.a), normal = cross(p, q);
+  const Real at_from = fabs(dot(normal, v)), at_to = fabs(dot(normal, w)), span = at_from + at_to;
+  // Of each determinant, and so of the quotient: 12 roundings of a product of lengths.
+  const double size = static_cast<double>(norm(p)) * static_cast<double>(norm(q)) *
+                      (static_cast<double>(norm(v)) + static_cast<double>(norm(w)));
+  error = span > 0 ? 12 * u * size / static_cast<double>(span) : 1;
+  if constexpr (!std::is_same_v<Real, Extended>) {
+    using Finer = std::conditional_t<std::is_same_v<Real, double>, long double, Extended>;
+    if (error > bearable) {
+      const Real t = static_cast<Real>(crossing_parameter<Finer>(plane, from, to, bearable, error));
+      error += u;
+      return t;
+    }
+  }
+  return span > 0 ? Real(at_from / span) : Real(0.5);
 }
 
 /// The position of a corner relative to an origin. displacement: how far it may lie from the true one.
 template <class Real>
 Vec<Real> position(const RadiatorFacet& facet, const ClippedCorner& corner, const PlanePoints& plane,
                    const Vec3& origin, double& displacement) {
-  using std::fabs;
   const double u = static_cast<double>(std::numeric_limits<Real>::epsilon());
   const Vec3& from = facet.loop[corner.from];
   const Vec<Real> start = difference<Real>(from, origin);
   displacement = u * static_cast<double>(norm(start));
   if (!corner.is_crossing()) return start;
   const Vec3& to = facet.loop[corner.to];
-  double from_error = 0, to_error = 0;
-  const Real at_from = fabs(plane_functional<Real>(plane, from, from_error)),
-             at_to = fabs(plane_functional<Real>(plane, to, to_error));
-  const Real span = at_from + at_to;
+  double error = 0;
+  const Real t = crossing_parameter<Real>(plane, from, to, 8 * u, error);
   const Vec<Real> edge = difference<Real>(to, from);
-  const double length = static_cast<double>(norm(edge));
-  const double error = from_error + to_error;
-  const bool known = span > 0 && error < static_cast<double>(span);
-  const Real t = span > 0 ? Real(at_from / span) : Real(0.5);
-  displacement += known ? (2 * error / static_cast<double>(span) + 4 * u) * length : length;
+  displacement += (error + 4 * u) * static_cast<double>(norm(edge));
   return start + t * edge;
 }
 

@@ -206,7 +206,11 @@ int order_for(double half, double gap, double height_variation, double jacobian_
 }  // namespace
 
 std::optional<Exchange> separated_exchange(const FacetPair& pair, double relative) {
-  // A quick look first: spheres.
+  // Whole facets nearer than that need too many points.
+  if (pair.of_a.size() == pair.a->loop.size() && pair.of_b.size() == pair.b->loop.size() &&
+      norm(pair.b->centre - pair.a->centre) < 1.5 * std::max(pair.a->radius, pair.b->radius)) {
+    return std::nullopt;
+  }
   const Vec3 origin = pair.a->centre;
   const Cells of_a = cells_of(*pair.a, pair.of_a, *pair.b, origin);
   if (!of_a.well_known) return std::nullopt;
