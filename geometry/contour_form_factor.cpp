@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "geometry/area_exchange.h"
 #include "geometry/edge_pair.h"
 
 namespace exitance {
@@ -101,9 +102,35 @@ Exchange contour_exchange(const FacetPair& pair, double tolerance) {
 
 /// A pair of facets on its way to the precision it needs.
 struct Measured {
+  enum class Way { quick, finer_contour, area, extended };
+
   FacetPair pair;
   Exchange exchange;
-  int stage = 0;
+  Way way = Way::quick;
+
+  /// Takes the next way that can bring the error to `wanted`; false if none is left.
+  bool refine(double wanted) {
+    // Long double has 11 bits more.
+    if (way == Way::quick && exchange.error * 0x1p-10 <= wanted) {
+      way = Way::finer_contour;
+      exchange = contour_exchange<long double>(pair, 0.1 * wanted);
+    } else if (way < Way::area) {
+      way = Way::area;
+      take_better(area_exchange<double>(pair, 0.1 * wanted));
+      if (exchange.error > wanted) take_better(area_exchange<long double>(pair, 0.1 * wanted));
+    } else if (way == Way::area) {
+      way = Way::extended;
+      exchange = contour_exchange<Extended>(pair, 0.01 * wanted);
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+ private:
+  void take_better(const std::optional<Exchange>& other) {
+    if (other && other->error < exchange.error) exchange = *other;
+  }
 };
 
 /// Bound of F in either direction between facets that face the same way in nearly one plane: the directions between
@@ -121,7 +148,7 @@ Exchange unobstructed_exchange(const Radiator& a, const Radiator& b, const Excha
   boost::container::small_vector<Measured, 4> open;
   for (const RadiatorFacet& f : a.facets()) {
     for (const RadiatorFacet& g : b.facets()) {
-      Measured m{{&f, &g, clip_in_front(f, g), {}}, {}, 0};
+      Measured m{{&f, &g, clip_in_front(f, g), {}}, {}};
       if (m.pair.of_a.empty()) continue;
       m.pair.of_b = clip_in_front(g, f);
       if (m.pair.of_b.empty()) continue;
@@ -148,11 +175,7 @@ Exchange unobstructed_exchange(const Radiator& a, const Radiator& b, const Excha
     const double share = wanted / static_cast<double>(open.size() + 1);
     bool refined = false;
     for (Measured& m : open) {
-      if (m.exchange.error <= share || m.stage == 2) continue;
-      refined = true;
-      ++m.stage;
-      m.exchange = m.stage == 1 ? contour_exchange<long double>(m.pair, 0.1 * share)
-                                : contour_exchange<Extended>(m.pair, 0.01 * share);
+      if (m.exchange.error > share && m.refine(share)) refined = true;
     }
     if (!refined) break;
   }
