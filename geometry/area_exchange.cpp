@@ -84,8 +84,7 @@ Question<Real> question(const RadiatorFacet& receiver, const ClippedLoop& receiv
     q.normal = {receiver.normal.x, receiver.normal.y, receiver.normal.z};
   } else {  // a needle's normal needs digits that its edges' cross product loses
     const PlanePoints plane = receiver.plane();
-    Vec<Extended> n =
-        cross(difference<Extended>(*plane.b, *plane.a), difference<Extended>(*plane.c, *plane.a));
+    Vec<Extended> n = cross(difference<Extended>(*plane.b, *plane.a), difference<Extended>(*plane.c, *plane.a));
     n = Extended(1 / norm(n)) * n;
     q.normal = {static_cast<Real>(n.x), static_cast<Real>(n.y), static_cast<Real>(n.z)};
   }
@@ -215,9 +214,9 @@ std::optional<Exchange> area_exchange(const FacetPair& pair, double tolerance) {
       const Vec<Real> low = c[0] + Real(s) * (c[1] - c[0]), high = c[3] + Real(s) * (c[2] - c[3]);
       for (std::size_t j = 0; j < rule_t.node.size(); ++j) {
         const double t = 0.5 * (1 + rule_t.node[j]);
-        const double weight = 0.25 * rule_s.weight[i] * rule_t.weight[j] *
-                              (cell.jacobian[0] + s * (cell.jacobian[1] - cell.jacobian[0]) +
-                               t * (cell.jacobian[2] - cell.jacobian[0]));
+        const double weight =
+            0.25 * rule_s.weight[i] * rule_t.weight[j] *
+            (cell.jacobian[0] + s * (cell.jacobian[1] - cell.jacobian[0]) + t * (cell.jacobian[2] - cell.jacobian[0]));
         Real seen(0);
         value += Real(weight) * lambert_sum(q, Vec<Real>(low + Real(t) * (high - low)), seen);
         angles += Real(weight) * seen;
@@ -227,8 +226,7 @@ std::optional<Exchange> area_exchange(const FacetPair& pair, double tolerance) {
     sum += value;
     const double near = std::max(gap, 0.1 * radius);
     // A normal in double carries 2^-49, 16 roundings of which 8 are others'.
-    error += area * truncation + 16 * u * static_cast<double>(angles) +
-             area * std::min(1.0, 4 * q.displacement / near);
+    error += area * truncation + 16 * u * static_cast<double>(angles) + area * std::min(1.0, 4 * q.displacement / near);
   }
   Exchange result;
   result.integral = static_cast<double>(sum) / (2 * std::numbers::pi);

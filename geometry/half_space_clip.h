@@ -62,7 +62,7 @@ Vec<Real> position(const RadiatorFacet& facet, const ClippedCorner& corner, cons
   const double u = static_cast<double>(std::numeric_limits<Real>::epsilon());
   const Vec3& from = facet.loop[corner.from];
   const Vec<Real> start = difference<Real>(from, origin);
-  displacement = u * static_cast<double>(norm(start));
+  displacement = 0.5 * u * static_cast<double>(norm(start));
   if (!corner.is_crossing()) return start;
   const Vec3& to = facet.loop[corner.to];
   double error = 0;
