@@ -144,6 +144,25 @@ double bound_between_neighbours(const RadiatorFacet& a, const RadiatorFacet& b) 
   return difference * difference;
 }
 
+/// Bound of the area of what is left of a facet, and so of what it exchanges.
+double area_bound(const RadiatorFacet& facet, const ClippedLoop& loop, const RadiatorFacet& plane) {
+  if (std::none_of(loop.begin(), loop.end(), [](const ClippedCorner& c) { return c.is_crossing(); })) {
+    return facet.area;
+  }
+  Vec<double> first, previous, doubled;
+  double displacement = 0, length = 0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    double moved = 0;
+    const Vec<double> p = position<double>(facet, loop[k], plane.plane(), facet.loop[loop.front().from], moved);
+    displacement = std::max(displacement, moved);
+    if (k == 0) first = p;
+    doubled = doubled + cross(previous - first, p - first);
+    length += norm(p - previous);
+    previous = p;
+  }
+  return 0.5 * norm(doubled) + 2 * displacement * length;
+}
+
 }  // namespace
 
 Exchange unobstructed_exchange(const Radiator& a, const Radiator& b, const ExchangeTolerance& tolerance) {
@@ -156,9 +175,10 @@ Exchange unobstructed_exchange(const Radiator& a, const Radiator& b, const Excha
       if (m.pair.of_a.empty()) continue;
       m.pair.of_b = clip_in_front(g, f);
       if (m.pair.of_b.empty()) continue;
-      const double bound = bound_between_neighbours(f, g);
-      if (bound <= tolerance.negligible) {
-        total.error += bound * std::min(f.area, g.area);
+      const double bound = std::min(bound_between_neighbours(f, g) * std::min(f.area, g.area),
+                                    std::min(area_bound(f, m.pair.of_a, g), area_bound(g, m.pair.of_b, f)));
+      if (bound <= tolerance.negligible * std::min(f.area, g.area)) {
+        total.error += bound;
         continue;
       }
       const auto apart = separated_exchange(m.pair, 0.1 * tolerance.relative);

@@ -20,8 +20,9 @@ struct ExchangeTolerance {
 ///  - exactly 0 ± 0 if either lies nowhere in front of the other's plane, as do polygons in one plane, the two sides of
 ///    a sheet, and those of zero area. Decided exactly;
 ///  - each is clipped by the other's plane; edges and corners may coincide, cross or touch anywhere;
-///  - facets whose planes differ so little that F < `negligible` (neighbours in a rotated wall, most often) count 0,
-///    with that bound as their error.
+///  - facets whose planes differ so little, or of which so little lies in front of the other, that F < `negligible`
+///    (neighbours in a rotated wall, walls that end on another one's rounded edge) count 0, with that bound as their
+///    error.
 /// The error covers truncation and rounding, that of clipped corners included. Coordinates are taken as they are.
 /// REQUIRES: finite coordinates whose products of six neither overflow nor vanish (exact_scale.h).
 Exchange unobstructed_exchange(const Radiator& a, const Radiator& b, const ExchangeTolerance& tolerance = {});
