@@ -13,12 +13,13 @@ inline double point_below_corner(double a, double b, double c) {
   return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * std::numbers::pi);
 }
 
-/// Between two equal, opposite rectangles a × b at distance c (Howell's catalogue, C-11).
-inline double opposite_rectangles(double a, double b, double c) {
-  const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
-  return 2 / (std::numbers::pi * x * y) *
-         (0.5 * std::log(p * p * q * q / (1 + x * x + y * y)) + x * q * std::atan(x / q) + y * p * std::atan(y / p) -
-          x * std::atan(x) - y * std::atan(y));
+/// Between two equal, opposite rectangles a × b at distance c (Howell's catalogue, C-11). Its terms cancel when c is
+/// small.
+inline double opposite_rectangles(long double a, long double b, long double c) {
+  const long double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
+  return static_cast<double>(2 / (std::numbers::pi_v<long double> * x * y) *
+                             (0.5L * std::log(p * p * q * q / (1 + x * x + y * y)) + x * q * std::atan(x / q) +
+                              y * p * std::atan(y / p) - x * std::atan(x) - y * std::atan(y)));
 }
 
 /// Unit squares at a right angle with a common edge (Howell's catalogue, C-14).
