@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <boost/container/small_vector.hpp>
-#include <boost/multiprecision/mpfr.hpp>
 #include <cmath>
 #include <limits>
 #include <type_traits>
 
 #include "geometry/cone.h"
+#include "geometry/extended.h"
 #include "geometry/radiator.h"
 
 namespace exitance {
@@ -25,11 +25,6 @@ using ClippedLoop = boost::container::small_vector<ClippedCorner, 8>;
 
 /// Every sign is exact. Vertices on the plane are kept, never made anew.
 ClippedLoop clip_in_front(const RadiatorFacet& facet, const RadiatorFacet& plane);
-
-/// 80 decimal digits, 266 bits.
-using Extended =
-    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<80, boost::multiprecision::allocate_stack>,
-                                  boost::multiprecision::et_off>;
 
 /// Where the edge from – to, which a plane separates strictly, meets it: 0 at `from`, 1 at `to`. A value and a bound of
 /// its error; where that exceeds what is bearable in Real, finer arithmetic tells it.

@@ -2,22 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/multiprecision/mpfr.hpp>
 #include <stdexcept>
 
+#include "geometry/extended.h"
 #include "geometry/lambert.h"
 #include "geometry/visible_region.h"
 
 namespace exitance {
-namespace {
-
-/// 80 decimal digits, 266 bits.
-using Extended =
-    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<80, boost::multiprecision::allocate_stack>,
-                                  boost::multiprecision::et_off>;
-
-}  // namespace
-
 struct Viewpoint::State {
   static constexpr std::size_t kRecentBlockers = 4;
 

@@ -29,6 +29,7 @@ class ObstructedExchange {
   double integral() const;  ///< [m²]
   double error() const;     ///< [m²] estimate of |integral − true| that is meant to hold
   std::uint64_t points() const { return points_; }
+  std::size_t events() const { return events_.size(); }
 
  private:
   struct Cell {

@@ -1,0 +1,135 @@
+#include "src/form_factor/pair_form_factor.h"
+
+#include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <cmath>
+
+#include "geometry/contour_form_factor.h"
+#include "geometry/shaft.h"
+#include "src/form_factor/obstructed_exchange.h"
+
+namespace exitance {
+namespace {
+
+/// Bound of the form factor from any point of one radiator to the other: a disc's worth of area at the distance of the
+/// spheres around them, and never more than 1.
+double most(const RadiatorFacet& from, const RadiatorFacet& to) {
+  const double distance = norm(to.centre - from.centre) - from.radius - to.radius;
+  if (!(distance > 0)) return 1;
+  return std::min(1.0, 1.01 * to.area / (boost::math::constants::pi<double>() * distance * distance));
+}
+
+}  // namespace
+
+ExchangeScene::ExchangeScene(const PolygonSoup& soup) : soup_(&soup) {
+  for (std::uint32_t p = 0; p < soup.polygon_count(); ++p) {
+    if (soup.role(p) == Role::patch) {
+      for (std::uint32_t f = soup.first_facet(p); f < soup.first_facet(p + 1); ++f) add({f, {}});
+    }
+    end_patch();
+  }
+}
+
+ExchangeScene::ExchangeScene(const PolygonSoup& soup, const PatchMesh& mesh) : soup_(&soup) {
+  for (const Patch& patch : mesh.patches) {
+    for (const PatchPiece& piece : mesh.pieces_of(patch)) add({piece.facet, mesh.loop(piece)});
+    end_patch();
+  }
+}
+
+void ExchangeScene::add(const Source& source) {
+  const std::vector<Loop> loop{corners_of(*soup_, source)};
+  Piece piece{source, Radiator(loop)};
+  if (!piece.radiator.facets().empty()) pieces_.push_back(std::move(piece));
+}
+
+void ExchangeScene::end_patch() {
+  double area = 0;
+  for (std::size_t k = first_.back(); k < pieces_.size(); ++k) area += pieces_[k].radiator.area();
+  first_.push_back(pieces_.size());
+  area_.push_back(area);
+}
+
+PairIntegrator::PairIntegrator(const ExchangeScene& scene) : scene_(scene), view_(scene.soup()) {}
+
+/// `tolerance`: in form factors; `needed`: of the exchange [m²].
+PairIntegrator::Exchanged PairIntegrator::exchange(const ExchangeScene::Piece& a, const ExchangeScene::Piece& b,
+                                                   double tolerance, double needed, const PairOptions& options,
+                                                   std::uint64_t& points) {
+  const Shaft shaft(scene_.soup(), {a.source.facet, a.source.loop}, {b.source.facet, b.source.loop});
+  if (!shaft.face_each_other()) return {};
+  shaft.find_occluders(items_);
+  if (items_.empty()) {
+    ExchangeTolerance asked;
+    asked.absolute = std::min(asked.absolute, tolerance);
+    const Exchange open = unobstructed_exchange(a.radiator, b.radiator, asked);
+    return {open.integral, open.error, PairClass::open};
+  }
+  for (const std::uint32_t item : items_) {
+    if (shaft.overlap(item) == Shaft::Overlap::blocking) return {0, 0, PairClass::blocked};
+  }
+  const RadiatorFacet &of_a = a.radiator.facets()[0], &of_b = b.radiator.facets()[0];
+  ObstructedExchange there(scene_.soup(), a.source, b.source, items_, most(of_a, of_b));
+  ObstructedExchange back(scene_.soup(), b.source, a.source, items_, most(of_b, of_a));
+  ObstructedExchange *one = &there, *other = &back;
+  if (back.events() < there.events()) std::swap(one, other);
+  one->refine(view_, needed, options.points);
+  Exchanged result{one->integral(), one->error(), PairClass::partial};
+  points += one->points();
+  // What the two sides say of each other is the best judge of their errors; a side that has much trouble, as beside a
+  // contact, leaves it to the other.
+  if (options.both_ways || one->error() > needed) {
+    other->refine(view_, needed, options.points);
+    points += other->points();
+    if (other->error() < one->error()) std::swap(one, other);
+    const double apart = std::fabs(there.integral() - back.integral());
+    result = {one->integral(), one->error(), PairClass::partial};
+    if (apart > there.error() + back.error()) result.error = apart;
+  }
+  return result;
+}
+
+PairFormFactor PairIntegrator::form_factor(std::size_t i, std::size_t j, const PairOptions& options) {
+  const double A_i = scene_.area(i), A_j = scene_.area(j), smaller = std::min(A_i, A_j);
+  PairFormFactor result;
+  if (!(smaller > 0)) return result;
+  bool open = false, blocked = false, partial = false;
+  double integral = 0, error = 0;
+  const auto a = scene_.pieces(i), b = scene_.pieces(j);
+  const double share = 1 / static_cast<double>(a.size() * b.size());
+  // A relative tolerance needs a value first: the rough one is good enough if it is large.
+  double tolerance = options.relative > 0 ? std::max(options.tolerance, 1e-3 * options.relative) : options.tolerance;
+  for (;;) {
+    integral = error = 0;
+    open = blocked = partial = false;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      for (std::size_t l = i == j ? k + 1 : 0; l < b.size(); ++l) {
+        const Exchanged e = exchange(a[k], b[l], tolerance * share, tolerance * smaller * share, options, result.points);
+        const double times = i == j ? 2 : 1;  // of a bent patch, what goes there and what comes back
+        integral += times * e.integral;
+        error += times * e.error;
+        open = open || e.kind == PairClass::open;
+        blocked = blocked || e.kind == PairClass::blocked;
+        partial = partial || e.kind == PairClass::partial;
+      }
+    }
+    const double enough = std::max(options.tolerance * smaller, options.relative * integral);
+    if (error <= enough || tolerance <= options.tolerance) break;
+    tolerance = std::max(options.tolerance, std::min(0.1 * tolerance, 0.5 * options.relative * integral / smaller));
+  }
+  result.kind = partial || (open && blocked) ? PairClass::partial
+                : open                       ? PairClass::open
+                : blocked                    ? PairClass::blocked
+                                             : PairClass::facing_away;
+  const auto ratio = [&](double area, double& F, double& F_error) {
+    F = integral / area;
+    F_error = error / area + 16 * kRoundoff * F;
+  };
+  ratio(A_i, result.F, result.F_error);
+  ratio(A_j, result.F_reverse, result.F_reverse_error);
+  result.reached = result.F_error <= std::max(options.tolerance, options.relative * result.F) &&
+                   result.F_reverse_error <= std::max(options.tolerance, options.relative * result.F_reverse);
+  return result;
+}
+
+}  // namespace exitance
