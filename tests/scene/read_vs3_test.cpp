@@ -169,17 +169,17 @@ TEST_F(Vs3, ExchangeOfARotatedBaseIsTheWholesLessTheSubsurfaces) {
 
   std::vector<Polygon> polygons;
   for (const Surface& s : scene.surfaces) polygons.push_back(s.polygon);
-  const AreaFormFactors found = area_form_factors(AreaScene(polygons, {}), 1e-7);
+  const AreaFormFactors found = area_form_factors(AreaScene(polygons, {}), 1e-5);
   const auto F = [&](std::size_t i, std::size_t j) { return found.F[i * found.n + j]; };
   EXPECT_NEAR(found.area[2], 1 - 0.08 - 0.12, 1e-12);
   // Opposite and adjacent faces of a cube (parallel squares' closed form; the rest by symmetry).
   constexpr double kOpposite = 0.19982489569838744, kAdjacent = (1 - kOpposite) / 4;
-  EXPECT_NEAR(F(0, 2) + F(0, 6) + F(0, 7), kAdjacent, 1e-6);
-  EXPECT_NEAR(F(4, 2) + F(4, 6) + F(4, 7), kOpposite, 1e-6);
+  EXPECT_NEAR(F(0, 2) + F(0, 6) + F(0, 7), kAdjacent, 3e-5);
+  EXPECT_NEAR(F(4, 2) + F(4, 6) + F(4, 7), kOpposite, 3e-5);
   for (const std::size_t i : {2u, 6u, 7u}) {
     double sum = 0;
     for (std::size_t j = 0; j < 8; ++j) sum += F(i, j);
-    EXPECT_NEAR(sum, 1, 1e-6) << i;
+    EXPECT_NEAR(sum, 1, 8e-5) << i;
     for (const std::size_t j : {2u, 6u, 7u}) EXPECT_NEAR(F(i, j), 0, 1e-12);
   }
 }
