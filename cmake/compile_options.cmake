@@ -15,3 +15,10 @@ if(EXITANCE_SANITIZE)
   add_compile_options(-fsanitize=${EXITANCE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${EXITANCE_SANITIZE})
 endif()
+
+# GCC 12 with AVX-512 stores the literals {a, a, 0, 0} as {a, a, a, a}: it takes a constant of 256 bits whose upper words
+# are zero for a broadcast of the lower ones, where it may move it from a general register (tests/scene/compiler_test.cpp).
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13
+   AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  target_compile_options(exitance_compile_options INTERFACE -mtune-ctrl=^inter_unit_moves_to_vec)
+endif()

@@ -5,7 +5,7 @@
 namespace exitance {
 
 void SceneOptions::add_to(CLI::App& verb) {
-  verb.add_option("SCENE", path_, "Scene: .toml, .obj, .ply, .off or .stl")->required();
+  verb.add_option("SCENE", path_, "Scene: .toml, .obj, .ply, .off, .stl or .vs3")->required();
   verb.add_option("--emission", emission_, "What Ke (and E where a scene file does not say) means")
       ->check(CLI::IsMember({"exitance", "radiance"}))
       ->capture_default_str();

@@ -5,6 +5,7 @@
 #include <embree3/rtcore_config.h>
 #include <exitance_version.h>
 #include <fmt/format.h>
+#include <hdf5.h>
 #include <tbb/version.h>
 
 #include <Eigen/Core>
@@ -24,6 +25,7 @@ Manifest build_manifest() {
       {"OpenMesh",
        fmt::format("{}.{}.{}", (OM_VERSION & 0xf0000) >> 16, (OM_VERSION & 0x0ff00) >> 8, OM_VERSION & 0xff)},
       {"TBB", TBB_runtime_version()},
+      {"HDF5", fmt::format("{}.{}.{}", H5_VERS_MAJOR, H5_VERS_MINOR, H5_VERS_RELEASE)},
       {"Embree", RTC_VERSION_STRING}};
   return manifest;
 }

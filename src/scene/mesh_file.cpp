@@ -20,7 +20,7 @@ FaceList read_faces(const std::filesystem::path& path, Emission emission) {
   if (extension == ".off") return read_off(path);
   if (extension == ".stl") return read_stl(path);
   throw InputError(path.string(), 0,
-                   "the extension \"" + extension + "\" is not known; use .obj, .ply, .off, .stl or .toml");
+                   "the extension \"" + extension + "\" is not known; use .obj, .ply, .off, .stl, .toml or .vs3");
 }
 
 }  // namespace

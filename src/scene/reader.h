@@ -17,7 +17,8 @@ struct ReadOptions {
   bool keep_faults = false;
 };
 
-/// Reads .obj (with its .mtl), .ply, .off, .stl or .toml (see scene_file.h), whatever the case of the extension.
+/// Reads .obj (with its .mtl), .ply, .off, .stl, .toml (see scene_file.h) or .vs3 (see read_vs3.h), whatever the case
+/// of the extension.
 /// Polygons stay polygons, in file order, coordinates the doubles nearest to what is written. Faces of meshes that
 /// cross themselves are mended and zero-area faces kept (see face_mending.h), materials that are missing are replaced
 /// by rho 0.5, E 0, each with a warning in the scene. Throws InputError for a missing or unreadable file, an unknown

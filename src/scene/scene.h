@@ -19,6 +19,9 @@ struct Material {
   std::uint32_t line = 0;   ///< and in which line; 0 when unknown
 };
 
+/// The group of a surface that stands for itself.
+inline constexpr std::uint32_t kNoGroup = 0xffffffffu;
+
 /// One input polygon: the unit that occludes. Its front is where its outer loop runs counter-clockwise.
 struct Surface {
   Polygon polygon = {};
@@ -26,6 +29,9 @@ struct Surface {
   std::uint32_t object = 0;
   bool obstruction_only = false;  ///< a pure occluder: hides, but neither emits nor receives
   std::uint32_t line = 0;         ///< where it stands in its object's file; 0 when unknown
+  /// Surfaces of one group share a row and a column of the form-factor matrix (View3D's combined surfaces, the pieces
+  /// of one that others were cut out of). Nothing else depends on it.
+  std::uint32_t group = kNoGroup;
 };
 
 struct SceneObject {

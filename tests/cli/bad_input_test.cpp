@@ -48,6 +48,7 @@ TEST_F(BadInputTest, Scenes) {
   expect_of_scene(3, write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), "nan.obj:2: ");
   expect_of_scene(3, write("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"), "range.obj:4: ");
   expect_of_scene(3, write("two.obj", "v 0 0 0\nv 1 0 0\nf 1 2\n"), "two.obj:3: ");
+  expect_of_scene(3, write("flat.vs3", "F 2\n"), "flat.vs3:1: ");
   expect_of_scene(3, write("short.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n"), "short.off");
   expect_of_scene(3,
                   write("rho.toml",

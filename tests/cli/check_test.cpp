@@ -44,6 +44,27 @@ TEST(Check, EndsWithThreeOnErrorsAndNamesTheirPlace) {
   EXPECT_THAT(kinds(nlohmann::json::parse(json.out)), testing::IsSupersetOf({"non_finite", "no_emitter"}));
 }
 
+// Three faces of a room and the other three combined, a window in one of them.
+constexpr std::string_view kRoom =
+    "T Room\nF 3\nV 1 0 0 0\nV 2 1 0 0\nV 3 1 1 0\nV 4 0 1 0\nV 5 0 0 1\nV 6 1 0 1\nV 7 1 1 1\nV 8 0 1 1\n"
+    "V 9 .25 0 .25\nV 10 .75 0 .25\nV 11 .75 0 .75\nV 12 .25 0 .75\n"
+    "S 1 1 2 3 4 0 0 .5 floor\nS 2 5 8 7 6 0 0 .5 ceiling\nS 3 1 5 6 2 0 0 .5 wall\nS 4 2 6 7 3 0 0 .5 right\n"
+    "S 5 3 7 8 4 0 4 .5 back\nS 6 4 8 5 1 0 4 .5 left\nS 7 9 12 11 10 3 0 .5 window\nEnd\n";
+
+TEST(Check, TakesView3DsScenesAndSoDoesSolve) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "room.vs3") << kRoom;
+  const std::string scene = (scratch / "room.vs3").string();
+  const auto report = nlohmann::json::parse(run("check --json " + scene).out);
+  EXPECT_EQ(report.at("scene"), "Room");
+  EXPECT_TRUE(report.at("closed"));
+  EXPECT_EQ(report.at("bands"), 1);
+  EXPECT_THAT(kinds(report), testing::ElementsAre("no_emitter"));
+  const Outcome solved = run("solve --json " + scene);
+  EXPECT_EQ(solved.code, 0);
+  EXPECT_EQ(nlohmann::json::parse(solved.out).at("patches"), 7);
+}
+
 TEST(Generate, TheSameSeedGivesTheSameClosedRoom) {
   const ScratchFolder scratch;
   const auto make = [&](const char* name, const char* seed) {

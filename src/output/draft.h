@@ -1,0 +1,30 @@
+#pragma once
+// A file while it is being written.
+
+#include <filesystem>
+#include <string>
+
+namespace exitance {
+
+/// The path beside `path` under which it is written. Removed at the end unless published.
+class Draft {
+ public:
+  explicit Draft(std::filesystem::path path);
+  ~Draft();
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  const std::filesystem::path& path() const { return beside_; }
+
+  /// Renames the draft, which has been closed, to what it is a draft of, in place of an earlier file of that name. It
+  /// is on the disk then: neither a killed program nor a power failure takes it away. Throws InputError.
+  void publish() const;
+
+  /// Throws the InputError that says why the file cannot be written.
+  [[noreturn]] void refuse(const std::string& why) const;
+
+ private:
+  std::filesystem::path path_, beside_;
+};
+
+}  // namespace exitance

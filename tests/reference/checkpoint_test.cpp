@@ -1,0 +1,263 @@
+#include "src/reference/checkpoint.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+#include <stdexcept>
+
+#include "src/reference/archive.h"
+#include "tests/reference/damage.h"
+
+namespace exitance {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr const char* kKey = "mesh 1234\ntolerance 1e-9\nversion 0.1";
+
+// What a run computes for a row: any bits, and the same ones each time.
+void append_row(PairRows& rows, std::uint32_t row) {
+  std::mt19937_64 random(row);
+  const auto number = [&] {
+    for (;;) {
+      const double value = std::bit_cast<double>(random());
+      if (!std::isnan(value)) return value;
+    }
+  };
+  rows.row.push_back(row);
+  for (std::uint32_t column = row; column < row + row % 5; ++column) {
+    rows.column.push_back(column);
+    rows.F.push_back(number());
+    rows.F_error.push_back(number());
+    rows.F_reverse.push_back(number());
+    rows.F_reverse_error.push_back(number());
+    rows.mark.push_back(static_cast<std::uint8_t>(random()));
+  }
+  rows.row_first.push_back(rows.column.size());
+}
+
+PairRows some_rows(std::uint32_t first, std::uint32_t last) {
+  PairRows rows;
+  for (std::uint32_t row = first; row < last; ++row) append_row(rows, row);
+  return rows;
+}
+
+bool operator==(const PairRows& a, const PairRows& b) {
+  return a.row == b.row && a.row_first == b.row_first && a.column == b.column && a.F == b.F && a.F_error == b.F_error &&
+         a.F_reverse == b.F_reverse && a.F_reverse_error == b.F_reverse_error && a.mark == b.mark;
+}
+
+std::set<std::uint32_t> rows_in(const Checkpoint& checkpoint) {
+  std::set<std::uint32_t> found;
+  for (const PairRows& part : checkpoint.finished()) {
+    PairRows expected;
+    for (const std::uint32_t row : part.row) append_row(expected, row);
+    EXPECT_TRUE(part == expected);
+    found.insert(part.row.begin(), part.row.end());
+  }
+  return found;
+}
+
+std::string error_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Checkpoint, RowsComeBackBitForBitInTheirOrder) {
+  const ScratchFolder folder;
+  const auto path = folder / "m.h5.parts";
+  {
+    Checkpoint checkpoint(path, kKey);
+    EXPECT_TRUE(checkpoint.finished().empty());
+    checkpoint.add(some_rows(10, 30));
+    checkpoint.add(some_rows(0, 1));
+    EXPECT_EQ(checkpoint.finished().size(), 2u);
+  }
+  Checkpoint checkpoint(path, kKey);
+  checkpoint.add(some_rows(40, 45));
+  const std::vector<PairRows> parts = checkpoint.finished();
+  ASSERT_EQ(parts.size(), 3u);
+  EXPECT_TRUE(parts[0] == some_rows(10, 30));
+  EXPECT_TRUE(parts[1] == some_rows(0, 1));
+  EXPECT_TRUE(parts[2] == some_rows(40, 45));
+}
+
+TEST(Checkpoint, IsRemovedWithEverythingOfItsOwn) {
+  const ScratchFolder folder;
+  Checkpoint first(folder / "a.parts", kKey);
+  first.add(some_rows(0, 3));
+  first.remove();
+  EXPECT_EQ(folder.files(), 0u);
+  Checkpoint second(folder / "b.parts", kKey);
+  second.add(some_rows(0, 3));
+  put(folder / "b.parts" / "notes.txt", "mine");
+  second.remove();
+  EXPECT_EQ(contents(folder / "b.parts" / "notes.txt"), "mine");
+}
+
+TEST(Checkpoint, OfAnotherRunIsNamedWithWhatDiffers) {
+  const ScratchFolder folder;
+  { Checkpoint(folder / "a.parts", kKey).add(some_rows(0, 3)); }
+  const Checkpoint other(folder / "a.parts", "mesh 1234\ntolerance 1e-6\nversion 0.1");
+  EXPECT_THAT(error_of([&] { other.finished(); }),
+              AllOf(HasSubstr("rows-000001.h5"), HasSubstr("\"tolerance 1e-9\" there, \"tolerance 1e-6\" here")));
+}
+
+TEST(Checkpoint, OfAShorterKeyIsNamedToo) {
+  const ScratchFolder folder;
+  { Checkpoint(folder / "a.parts", kKey).add(some_rows(0, 3)); }
+  const Checkpoint other(folder / "a.parts", std::string(kKey) + "\nseed 2");
+  EXPECT_THAT(error_of([&] { other.finished(); }), HasSubstr("\"\" there, \"seed 2\" here"));
+}
+
+TEST(Checkpoint, DamageIsNoticedAndNamed) {
+  const ScratchFolder folder;
+  const auto path = folder / "a.parts";
+  {
+    Checkpoint checkpoint(path, kKey);
+    checkpoint.add(some_rows(0, 200));
+    checkpoint.add(some_rows(200, 400));
+  }
+  const auto damaged = path / "rows-000002.h5";
+  const std::string bytes = contents(damaged);
+  std::size_t noticed = 0;
+  for (std::size_t at = 0; at < bytes.size(); at += 97) {
+    put(damaged, flipped(bytes, at));
+    const Checkpoint checkpoint(path, kKey);
+    try {
+      EXPECT_EQ(rows_in(checkpoint).size(), 400u) << at;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("rows-000002.h5"));
+      ++noticed;
+    }
+  }
+  EXPECT_GT(noticed, bytes.size() / 97 / 2);
+  for (const std::size_t length : {std::size_t{0}, std::size_t{1}, bytes.size() / 2, bytes.size() - 1}) {
+    put(damaged, bytes.substr(0, length));
+    EXPECT_THROW(Checkpoint(path, kKey).finished(), DamagedFile) << length;
+  }
+  // Removed, as the message says, it costs its own rows only, and a new part takes no old name.
+  std::filesystem::remove(path / "rows-000001.h5");
+  put(damaged, bytes);
+  Checkpoint checkpoint(path, kKey);
+  EXPECT_EQ(rows_in(checkpoint).size(), 200u);
+  checkpoint.add(some_rows(0, 200));
+  EXPECT_EQ(rows_in(checkpoint).size(), 400u);
+}
+
+TEST(Checkpoint, ARowThatIsThereTwiceIsNoticed) {
+  const ScratchFolder folder;
+  Checkpoint checkpoint(folder / "a.parts", kKey);
+  checkpoint.add(some_rows(0, 3));
+  checkpoint.add(some_rows(2, 4));
+  EXPECT_THAT(error_of([&] { checkpoint.finished(); }), AllOf(HasSubstr("rows-000002.h5"), HasSubstr("row 2")));
+}
+
+TEST(Checkpoint, RowsThatDoNotFitAreRefused) {
+  const ScratchFolder folder;
+  Checkpoint checkpoint(folder / "a.parts", kKey);
+  PairRows rows = some_rows(0, 3);
+  rows.F_error.pop_back();
+  EXPECT_THROW(checkpoint.add(rows), std::invalid_argument);
+  rows = some_rows(0, 3);
+  rows.row.push_back(9);
+  EXPECT_THROW(checkpoint.add(rows), std::invalid_argument);
+  EXPECT_TRUE(checkpoint.finished().empty());
+}
+
+TEST(Checkpoint, BelongsToOneRunAtATime) {
+  const ScratchFolder folder;
+  const Checkpoint first(folder / "a.parts", kKey);
+  EXPECT_THAT(error_of([&] { Checkpoint(folder / "a.parts", kKey); }), HasSubstr("another run"));
+  put(folder / "file", "");
+  EXPECT_THAT(error_of([&] { Checkpoint(folder / "file", kKey); }), HasSubstr("cannot be kept there"));
+  EXPECT_THAT(error_of([&] { Checkpoint(folder / "file" / "a.parts", kKey); }), HasSubstr("cannot be kept there"));
+}
+
+constexpr std::uint32_t kRows = 60, kRowsAtOnce = 3;
+
+// A run in a process of its own: what is missing is computed, in blocks, and the number of finished rows is reported
+// through the pipe after each.
+[[noreturn]] void run(const std::filesystem::path& path, int report) {
+  Checkpoint checkpoint(path, kKey);
+  std::set<std::uint32_t> done = rows_in(checkpoint);
+  PairRows block;
+  for (std::uint32_t row = 0; row < kRows; ++row) {
+    if (done.contains(row)) continue;
+    append_row(block, row);
+    if (block.row.size() < kRowsAtOnce && row + 1 < kRows) continue;
+    checkpoint.add(block);
+    for (const std::uint32_t finished : block.row) {
+      if (write(report, &finished, sizeof finished) != sizeof finished) _exit(1);
+    }
+    block = PairRows();
+  }
+  _exit(0);
+}
+
+// Kills the run with signal 9 as soon as it has reported so many more rows, or a little later.
+void run_and_kill(const std::filesystem::path& path, std::size_t after, useconds_t later,
+                  std::set<std::uint32_t>& reported) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    close(ends[0]);
+    run(path, ends[1]);
+  }
+  close(ends[1]);
+  std::uint32_t row = 0;
+  std::size_t count = 0;
+  while (count < after && read(ends[0], &row, sizeof row) == sizeof row) {
+    EXPECT_TRUE(reported.insert(row).second) << "row " << row << " was computed again";
+    ++count;
+  }
+  usleep(later);
+  kill(child, SIGKILL);
+  while (read(ends[0], &row, sizeof row) == sizeof row) {
+    EXPECT_TRUE(reported.insert(row).second) << "row " << row << " was computed again";
+  }
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 0));
+}
+
+TEST(Checkpoint, NoReportedRowIsLostByKillingTheRun) {
+  const ScratchFolder folder;
+  const auto path = folder / "a.parts";
+  std::set<std::uint32_t> reported;
+  // At different points within a block: writing, waiting for the disk, renaming.
+  for (useconds_t round = 0; round < 12; ++round) {
+    run_and_kill(path, 3, 311 * round, reported);
+    // A row that is on the disk but was not reported any more counts as finished by the next run, and is not reported.
+    const Checkpoint checkpoint(path, kKey);
+    const std::set<std::uint32_t> saved = rows_in(checkpoint);
+    for (const std::uint32_t row : reported) EXPECT_TRUE(saved.contains(row)) << row;
+    EXPECT_LE(saved.size(), reported.size() + kRowsAtOnce * (round + 1));
+    for (const auto& file : std::filesystem::directory_iterator(path)) EXPECT_EQ(file.path().extension(), ".h5");
+  }
+  run_and_kill(path, kRows, 0, reported);
+  Checkpoint checkpoint(path, kKey);
+  EXPECT_EQ(rows_in(checkpoint).size(), kRows);
+  checkpoint.remove();
+  EXPECT_EQ(folder.files(), 0u);
+}
+
+}  // namespace
+}  // namespace exitance
