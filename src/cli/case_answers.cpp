@@ -12,6 +12,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Points that each integral of so many pairs may take, so that the whole of it ends within a minute.
+std::uint64_t points_per_integral(std::uint64_t pairs) {
+  return std::clamp<std::uint64_t>(20'000'000 / std::max<std::uint64_t>(1, pairs), 2'000, 200'000);
+}
+
 void answer_point_polygon(const nlohmann::json& question, double tolerance, Json& result) {
   const PointAnswer a = answer(read_point_question(question), tolerance);
   result["F"] = a.F;
@@ -36,9 +41,12 @@ void answer_polygon_polygon(const nlohmann::json& what, double tolerance, Json& 
   scene.add(question.occluders, exponent);
   PairFormFactor f;
   if (has_source) {
-    const AreaScene area_scene(scene.polygons, scene.roles);
-    AreaViews views = area_scene.views();
-    f = pair_form_factor(area_scene, views, 0, 1, tolerance, points_per_integral(1));
+    const PolygonSoup soup(scene.polygons, scene.roles);
+    const ExchangeScene exchange(soup);
+    PairOptions options;
+    options.tolerance = tolerance;
+    options.both_ways = true;
+    f = PairIntegrator(exchange).form_factor(0, 1, options);
   }
   result["F"] = f.F;
   result["F_error"] = f.F_error;
@@ -70,7 +78,12 @@ Enclosure enclose(const CasePatches& given, const std::string& path, double tole
     }
     result.present.push_back(p);
   }
-  result.form_factors = area_form_factors(AreaScene(scene.polygons, scene.roles), tolerance);
+  const PolygonSoup soup(scene.polygons, scene.roles);
+  PairOptions options;
+  options.tolerance = tolerance;
+  options.both_ways = true;
+  options.points = points_per_integral(scene.polygons.size() * (scene.polygons.size() - 1) / 2);
+  result.form_factors = area_form_factors(ExchangeScene(soup), options);
   return result;
 }
 

@@ -6,17 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace exitance {
+#include "src/form_factor/pair_rows.h"
 
-/// Finished rows, each with the pairs that its run computes together with it, as compressed as a FormFactorMatrix. The
-/// numbers come back bit for bit.
-struct PairRows {
-  std::vector<std::uint32_t> row;           ///< their numbers, in any order
-  std::vector<std::uint64_t> row_first{0};  ///< size rows + 1
-  std::vector<std::uint32_t> column;        ///< of each pair
-  std::vector<double> F, F_error, F_reverse, F_reverse_error;
-  std::vector<std::uint8_t> mark;  ///< what else its run wants to know of a pair: its class, whether it was reached
-};
+namespace exitance {
 
 /// A folder of archives, one for each time that rows were added. It belongs to one process at a time, and to one thread
 /// of it.

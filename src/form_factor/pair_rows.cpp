@@ -1,0 +1,135 @@
+#include "src/form_factor/pair_rows.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <chrono>
+
+namespace exitance {
+namespace {
+
+constexpr std::uint8_t kReached = 0x80;
+
+/// One row while threads work on several.
+struct Row {
+  std::vector<std::uint32_t> column;
+  std::vector<PairFormFactor> pair;
+  PairStatistics statistics;
+};
+
+}  // namespace
+
+std::uint8_t mark_of(const PairFormFactor& pair) {
+  return static_cast<std::uint8_t>(static_cast<std::uint8_t>(pair.kind) | (pair.reached ? kReached : 0));
+}
+PairClass class_of(std::uint8_t mark) {
+  return static_cast<PairClass>(mark & 3);
+}
+bool reached_of(std::uint8_t mark) {
+  return (mark & kReached) != 0;
+}
+
+PairStatistics& PairStatistics::operator+=(const PairStatistics& other) {
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    pairs[k] += other.pairs[k];
+    seconds[k] += other.seconds[k];
+  }
+  points += other.points;
+  unreached += other.unreached;
+  return *this;
+}
+
+PairRows pair_rows(const ExchangeScene& scene, std::span<const std::uint32_t> rows, const PairOptions& options,
+                   PairStatistics& statistics) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<Row> found(rows.size());
+  tbb::enumerable_thread_specific<PairIntegrator> integrators([&] { return PairIntegrator(scene); });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows.size(), 1), [&](const auto& some) {
+    PairIntegrator& integrator = integrators.local();
+    for (std::size_t r = some.begin(); r < some.end(); ++r) {
+      Row& row = found[r];
+      auto before = Clock::now();
+      for (std::uint32_t j = rows[r]; j < scene.size(); ++j) {
+        const PairFormFactor pair = integrator.form_factor(rows[r], j, options);
+        const auto now = Clock::now();
+        const auto kind = static_cast<std::size_t>(pair.kind);
+        ++row.statistics.pairs[kind];
+        row.statistics.seconds[kind] += std::chrono::duration<double>(now - before).count();
+        row.statistics.points += pair.points;
+        row.statistics.unreached += !pair.reached;
+        before = now;
+        if (pair.kind == PairClass::facing_away) continue;
+        row.column.push_back(j);
+        row.pair.push_back(pair);
+      }
+    }
+  });
+  PairRows result;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    result.row.push_back(rows[r]);
+    for (std::size_t k = 0; k < found[r].pair.size(); ++k) {
+      const PairFormFactor& pair = found[r].pair[k];
+      result.column.push_back(found[r].column[k]);
+      result.F.push_back(pair.F);
+      result.F_error.push_back(pair.F_error);
+      result.F_reverse.push_back(pair.F_reverse);
+      result.F_reverse_error.push_back(pair.F_reverse_error);
+      result.mark.push_back(mark_of(pair));
+    }
+    result.row_first.push_back(result.column.size());
+    statistics += found[r].statistics;
+  }
+  return result;
+}
+
+FormFactorMatrix matrix_of(std::span<const PairRows> rows, std::uint32_t patches) {
+  const auto for_each_entry = [&](const auto& visit) {
+    for (const PairRows& part : rows) {
+      for (std::size_t r = 0; r < part.row.size(); ++r) {
+        for (std::uint64_t k = part.row_first[r]; k < part.row_first[r + 1]; ++k) {
+          const std::uint32_t i = part.row[r], j = part.column[k];
+          if (part.F[k] == 0 && part.F_error[k] == 0) continue;
+          visit(i, j, part.F[k], part.F_error[k]);
+          if (i != j) visit(j, i, part.F_reverse[k], part.F_reverse_error[k]);
+        }
+      }
+    }
+  };
+  FormFactorMatrix matrix;
+  matrix.columns = patches;
+  matrix.row_first.assign(patches + std::size_t{1}, 0);
+  for_each_entry([&](std::uint32_t i, std::uint32_t, double, double) { ++matrix.row_first[i + 1]; });
+  for (std::size_t i = 0; i < patches; ++i) matrix.row_first[i + 1] += matrix.row_first[i];
+  const std::size_t entries = matrix.row_first.back();
+  FormFactorMatrix unsorted;  // by row, in the order in which they are met
+  unsorted.column.resize(entries);
+  unsorted.F.resize(entries);
+  unsorted.F_error.resize(entries);
+  std::vector<std::uint64_t> next(matrix.row_first.begin(), matrix.row_first.end() - 1);
+  for_each_entry([&](std::uint32_t i, std::uint32_t j, double F, double F_error) {
+    const std::uint64_t place = next[i]++;
+    unsorted.column[place] = j;
+    unsorted.F[place] = F;
+    unsorted.F_error[place] = F_error;
+  });
+  matrix.column.resize(entries);
+  matrix.F.resize(entries);
+  matrix.F_error.resize(entries);
+  std::vector<std::uint64_t> order;
+  for (std::size_t i = 0; i < patches; ++i) {
+    order.clear();
+    for (std::uint64_t k = matrix.row_first[i]; k < matrix.row_first[i + 1]; ++k) order.push_back(k);
+    std::ranges::sort(order, {}, [&](std::uint64_t k) { return unsorted.column[k]; });
+    std::uint64_t place = matrix.row_first[i];
+    for (const std::uint64_t k : order) {
+      matrix.column[place] = unsorted.column[k];
+      matrix.F[place] = unsorted.F[k];
+      matrix.F_error[place] = unsorted.F_error[k];
+      ++place;
+    }
+  }
+  return matrix;
+}
+
+}  // namespace exitance
