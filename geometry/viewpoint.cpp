@@ -126,6 +126,12 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   Box box;
   box.extend(view.receiver().point);
   for (const Vec3* v : corners) box.extend(*v);
+  // What lies in the source's plane covers it without reaching in front of it: of a convex shell on the far side, which
+  // is passed by below as a whole, one face does.
+  for (const std::uint32_t t : soup.coplanar(facet)) {
+    const std::uint32_t shell = soup.facets()[t].shell;
+    if (shell != kNone && soup.shells()[shell].convex && !add_candidate({t, kNone})) return false;
+  }
   found.clear();
   soup.index().find(half_spaces, box, found);
 

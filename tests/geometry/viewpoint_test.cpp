@@ -78,6 +78,32 @@ TEST(Viewpoint, CoversLieOnTheFront) {
   EXPECT_GT(behind.F, 0.5);
 }
 
+// A face of a solid covers an earlier face in its plane that looks the same way, and only that part of it.
+TEST(Viewpoint, ASolidCoversWhatItsFaceIsFlushWith) {
+  const Polygon floor{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {}};
+  const Polygon left{{{-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0}}, {}};
+  const std::vector<Polygon> box = {
+      {{{0, -2, -1}, {0, 2, -1}, {2, 2, -1}, {2, -2, -1}}, {}}, {{{0, -2, 0}, {2, -2, 0}, {2, 2, 0}, {0, 2, 0}}, {}},
+      {{{0, -2, -1}, {2, -2, -1}, {2, -2, 0}, {0, -2, 0}}, {}}, {{{0, 2, -1}, {0, 2, 0}, {2, 2, 0}, {2, 2, -1}}, {}},
+      {{{0, -2, -1}, {0, -2, 0}, {0, 2, 0}, {0, 2, -1}}, {}},   {{{2, -2, -1}, {2, 2, -1}, {2, 2, 0}, {2, -2, 0}}, {}}};
+  const auto seen = [&](const Polygon& source, bool box_is_later, Role of_box) {
+    std::vector<Polygon> polygons = box;
+    std::vector<Role> roles(polygons.size(), of_box);
+    const std::size_t place = box_is_later ? 0 : polygons.size();
+    polygons.insert(polygons.begin() + static_cast<std::ptrdiff_t>(place), source);
+    roles.insert(roles.begin() + static_cast<std::ptrdiff_t>(place), Role::patch);
+    const PolygonSoup soup(polygons, roles);
+    Viewpoint view(soup);
+    view.look_from({{0.1, 0.2, 1.5}, {0.1, 0, -1}});
+    return view.form_factor({soup.first_facet(static_cast<std::uint32_t>(place)), {}}).F;
+  };
+  EXPECT_NEAR(seen(floor, true, Role::patch), seen(left, true, Role::unoccluding), 1e-13);
+  EXPECT_NEAR(seen(floor, false, Role::patch), seen(floor, false, Role::unoccluding), 1e-13);
+  // Of what only occludes, a sheet covers any patch in its plane, a face of a solid one that it faces.
+  EXPECT_NEAR(seen(floor, false, Role::sheet), seen(left, true, Role::unoccluding), 1e-13);
+  EXPECT_NEAR(seen(floor, true, Role::solid_face), seen(floor, true, Role::unoccluding), 1e-13);
+}
+
 // Of the two sides of a sheet a point sees one, the front of the side that is turned to it.
 TEST(Viewpoint, SheetsAreSeenFromOneSide) {
   const std::vector<Polygon> polygons = {{{{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}}, {}},
