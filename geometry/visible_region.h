@@ -431,7 +431,7 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
     const std::uint32_t n = side.across;
     bool goes_on = n != kNone && n != source_facet_ && view_.facing(n) == facing;
     if (goes_on && covers) {
-      goes_on = facets[n].polygon == f.polygon;
+      goes_on = facets[n].polygon == f.polygon && std::binary_search(coplanar.begin(), coplanar.end(), n);
     } else if (goes_on && corner_sides_[side.from] == 0 && corner_sides_[side.to] == 0) {
       goes_on = reaches_in_front(n);
     }

@@ -104,6 +104,23 @@ TEST(Viewpoint, ASolidCoversWhatItsFaceIsFlushWith) {
   EXPECT_NEAR(seen(floor, true, Role::solid_face), seen(floor, true, Role::unoccluding), 1e-13);
 }
 
+// A floor and a rug of two triangles, one of which lies in the floor's plane while the other dips under it: it is the
+// first that hides, and the edge between them bounds what it hides.
+TEST(Viewpoint, OnlyTheFlushHalfOfABentRugCovers) {
+  const Polygon floor{{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, {}};
+  const Polygon rug{{{1, 1, 0}, {3, 1, 0}, {3, 3, 0}, {1, 3, -0x1p-30}}, {}};
+  const Polygon flush{{{1, 1, 0}, {3, 1, 0}, {3, 3, 0}}, {}};
+  const auto seen = [&](const Polygon& on_top) {
+    const PolygonSoup soup(std::vector<Polygon>{floor, on_top});
+    Viewpoint view(soup);
+    view.look_from({{1.75, 2, 3}, {0.1, 0.2, -1}});
+    return view.form_factor({0, {}});
+  };
+  const PointFormFactor with = seen(rug), expected = seen(flush);
+  ASSERT_GT(expected.F, 0.1);
+  EXPECT_NEAR(with.F, expected.F, with.error + expected.error);
+}
+
 // Of the two sides of a sheet a point sees one, the front of the side that is turned to it.
 TEST(Viewpoint, SheetsAreSeenFromOneSide) {
   const std::vector<Polygon> polygons = {{{{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}}, {}},
