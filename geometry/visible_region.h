@@ -308,7 +308,8 @@ const Cone<Real>& VisibleRegion<Real>::cone_of_facet(std::uint32_t facet) {
   return cone;
 }
 
-/// The silhouette of a convex shell: the edges between faces that are seen from the front and others.
+/// The silhouette of a convex shell: the edges between faces that are seen from the front and others. A face in the
+/// receiver's plane counts by the side on which the rounded point lies; without it the ring might not be convex.
 template <class Real>
 const Cone<Real>& VisibleRegion<Real>::cone_of_shell(std::uint32_t shell) {
   bool is_new = false;
@@ -316,7 +317,7 @@ const Cone<Real>& VisibleRegion<Real>::cone_of_shell(std::uint32_t shell) {
   if (!is_new) return cone;
   ring_.clear();
   for (const ShellEdge& edge : soup_.shells()[shell].edges) {
-    const bool left = view_.facing(edge.left) > 0, right = view_.facing(edge.right) > 0;
+    const bool left = view_.side(edge.left) > 0, right = view_.side(edge.right) > 0;
     if (left != right) ring_.push_back(left ? std::pair(edge.from, edge.to) : std::pair(edge.to, edge.from));
   }
   // The edges form one ring: each in turn gets behind it the one that starts where it ends.

@@ -121,6 +121,24 @@ TEST(Viewpoint, OnlyTheFlushHalfOfABentRugCovers) {
   EXPECT_NEAR(with.F, expected.F, with.error + expected.error);
 }
 
+// A point of one box's side (0) sees past another box (1 … 6), whose side 6 lies in the same plane; rounded an ulp
+// beyond that plane, where 6 is seen from its front, it sees the same of the floor.
+TEST(Viewpoint, APointRoundedOutOfItsPlaneSeesTheSolidsThatTouchIt) {
+  const std::vector<Polygon> polygons = {
+      {{{3, 2, 1}, {3, 2, 4}, {3, 3, 4}, {3, 3, 1}}, {}}, {{{2, 1, 0}, {2, 2, 0}, {3, 2, 0}, {3, 1, 0}}, {}},
+      {{{2, 1, 2}, {3, 1, 2}, {3, 2, 2}, {2, 2, 2}}, {}}, {{{2, 1, 0}, {3, 1, 0}, {3, 1, 2}, {2, 1, 2}}, {}},
+      {{{2, 2, 0}, {2, 2, 2}, {3, 2, 2}, {3, 2, 0}}, {}}, {{{2, 1, 0}, {2, 1, 2}, {2, 2, 2}, {2, 2, 0}}, {}},
+      {{{3, 1, 0}, {3, 2, 0}, {3, 2, 2}, {3, 1, 2}}, {}}, {{{3, 2, 1}, {4, 2, 1}, {4, 2, 4}, {3, 2, 4}}, {}},
+      {{{3, 3, 2}, {3, 4, 2}, {3, 4, 4}, {3, 3, 4}}, {}}, {{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, {}}};
+  const Vec3 x{3, 2.4996, 2.75578};
+  const PointFormFactor on_it = ask(polygons, x, {-1, 0, 0}, {});
+  ASSERT_EQ(on_it.visibility, Visibility::partial);
+  for (const double ulps : {-2, -1, 1, 2}) {
+    const PointFormFactor beside = ask(polygons, x + Vec3{ulps * 0x1p-51, 0, 0}, {-1, 0, 0}, {});
+    EXPECT_NEAR(beside.F, on_it.F, 1e-13) << ulps;
+  }
+}
+
 // Of the two sides of a sheet a point sees one, the front of the side that is turned to it.
 TEST(Viewpoint, SheetsAreSeenFromOneSide) {
   const std::vector<Polygon> polygons = {{{{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}}, {}},
