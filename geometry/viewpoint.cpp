@@ -268,7 +268,8 @@ PointFormFactor Viewpoint::form_factor(const Source& source, double tolerance) {
     return result;
   }
   const PointFormFactor plain = s.sum<double>(result);
-  if (plain.error <= tolerance) return plain;
+  // A value that its own error hides is given as 0. All of these err the same way: they must not add up.
+  if (plain.error <= (plain.F > 0 ? tolerance : tolerance / 16)) return plain;
   ++s.extended;
   s.set_source<Extended>(source.facet, source_facing);
   s.add_candidates<Extended>(source.facet);

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
+
+#include "tests/geometry/visibility_oracle.h"
 
 namespace exitance {
 namespace {
@@ -78,6 +81,23 @@ TEST(Viewpoint, CoversLieOnTheFront) {
   EXPECT_GT(behind.F, 0.5);
 }
 
+// A floor and a rug of two triangles, one of which lies in the floor's plane while the other dips under it: it is the
+// first that hides, and the edge between them bounds what it hides.
+TEST(Viewpoint, OnlyTheFlushHalfOfABentRugCovers) {
+  const Polygon floor{{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, {}};
+  const Polygon rug{{{1, 1, 0}, {3, 1, 0}, {3, 3, 0}, {1, 3, -0x1p-30}}, {}};
+  const Polygon flush{{{1, 1, 0}, {3, 1, 0}, {3, 3, 0}}, {}};
+  const auto seen = [&](const Polygon& on_top) {
+    const PolygonSoup soup(std::vector<Polygon>{floor, on_top});
+    Viewpoint view(soup);
+    view.look_from({{1.75, 2, 3}, {0.1, 0.2, -1}});
+    return view.form_factor({0, {}});
+  };
+  const PointFormFactor with = seen(rug), expected = seen(flush);
+  ASSERT_GT(expected.F, 0.1);
+  EXPECT_NEAR(with.F, expected.F, with.error + expected.error);
+}
+
 // A face of a solid covers an earlier face in its plane that looks the same way, and only that part of it.
 TEST(Viewpoint, ASolidCoversWhatItsFaceIsFlushWith) {
   const Polygon floor{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {}};
@@ -104,23 +124,6 @@ TEST(Viewpoint, ASolidCoversWhatItsFaceIsFlushWith) {
   EXPECT_NEAR(seen(floor, true, Role::solid_face), seen(floor, true, Role::unoccluding), 1e-13);
 }
 
-// A floor and a rug of two triangles, one of which lies in the floor's plane while the other dips under it: it is the
-// first that hides, and the edge between them bounds what it hides.
-TEST(Viewpoint, OnlyTheFlushHalfOfABentRugCovers) {
-  const Polygon floor{{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, {}};
-  const Polygon rug{{{1, 1, 0}, {3, 1, 0}, {3, 3, 0}, {1, 3, -0x1p-30}}, {}};
-  const Polygon flush{{{1, 1, 0}, {3, 1, 0}, {3, 3, 0}}, {}};
-  const auto seen = [&](const Polygon& on_top) {
-    const PolygonSoup soup(std::vector<Polygon>{floor, on_top});
-    Viewpoint view(soup);
-    view.look_from({{1.75, 2, 3}, {0.1, 0.2, -1}});
-    return view.form_factor({0, {}});
-  };
-  const PointFormFactor with = seen(rug), expected = seen(flush);
-  ASSERT_GT(expected.F, 0.1);
-  EXPECT_NEAR(with.F, expected.F, with.error + expected.error);
-}
-
 // A point of one box's side (0) sees past another box (1 … 6), whose side 6 lies in the same plane; rounded an ulp
 // beyond that plane, where 6 is seen from its front, it sees the same of the floor.
 TEST(Viewpoint, APointRoundedOutOfItsPlaneSeesTheSolidsThatTouchIt) {
@@ -137,6 +140,30 @@ TEST(Viewpoint, APointRoundedOutOfItsPlaneSeesTheSolidsThatTouchIt) {
     const PointFormFactor beside = ask(polygons, x + Vec3{ulps * 0x1p-51, 0, 0}, {-1, 0, 0}, {});
     EXPECT_NEAR(beside.F, on_it.F, 1e-13) << ulps;
   }
+}
+
+// A sliver at the horizon whose form factor is less than what double precision proves of its error.
+TEST(Viewpoint, AValueThatItsErrorHidesIsFoundByMoreDigits) {
+  const Polygon sliver{{{1.4383009909092819, 4.16591604043351, 1.4713784300498425},
+                        {1.4383007608553131, 4.1659158802377867, 0.029931785947447942},
+                        {1.438300610820116, 4.1435290484360277, 0.029931785947447942},
+                        {1.4383008408740849, 4.1435289282892338, 1.4713784300498425}},
+                       {}};
+  const Vec3 x{1.437218837044699, 4.1664570280684945, 0.029392532646353886},
+      normal{0.57749151863506454, 0.57691417572229375, -0.5776448560796098};
+  const PolygonSoup soup(std::vector<Polygon>{sliver});
+  Viewpoint view(soup);
+  view.look_from({x, normal});
+  double F = 0, error = 0;
+  for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
+    const PointFormFactor part = view.form_factor({f, {}}, 1e-11);
+    F += part.F;
+    error += part.error;
+  }
+  const auto truth = static_cast<double>(oracle_form_factor(x, normal, sliver, {}).F);
+  ASSERT_GT(truth, 1e-12);
+  EXPECT_NEAR(F, truth, 6e-13);
+  EXPECT_LE(std::fabs(F - truth), error);
 }
 
 // Of the two sides of a sheet a point sees one, the front of the side that is turned to it.
