@@ -121,6 +121,12 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   Box box;
   box.extend(view.receiver().point);
   for (const Vec3* v : corners) box.extend(*v);
+  // What lies in the source's plane covers it without reaching in front of it: of a convex shell on the far side, which
+  // is passed by below as a whole, one face does.
+  for (const std::uint32_t t : soup.coplanar(facet)) {
+    const std::uint32_t shell = soup.facets()[t].shell;
+    if (shell != kNone && soup.shells()[shell].convex && !add_candidate({t, kNone})) return false;
+  }
   found.clear();
   soup.index().find(half_spaces, box, found);
   soup.prefetch(found);
@@ -249,7 +255,8 @@ PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance,
     return result;
   }
   const PointFormFactor plain = sum<double>(result);
-  if (plain.error <= tolerance) return plain;
+  // A value that its own error hides is given as 0. All of these err the same way: they must not add up.
+  if (plain.error <= (plain.F > 0 ? tolerance : tolerance / 16)) return plain;
   ++extended;
   set_source<Extended>(source.facet, source_facing);
   add_candidates<Extended>(source.facet);
