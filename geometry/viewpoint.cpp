@@ -30,6 +30,7 @@ struct Viewpoint::State {
   bool add_candidate(const Occluder& occluder);
   bool hidden_by_recent();
   bool find_candidates(std::uint32_t facet);
+  bool add_flush_faces(std::uint32_t facet);
   bool add_items(std::span<const std::uint32_t> items);
   bool prepare(const Source& source, int& source_facing);
   bool put_occluders(const Source& source, int source_facing);
@@ -121,16 +122,21 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   Box box;
   box.extend(view.receiver().point);
   for (const Vec3* v : corners) box.extend(*v);
-  // What lies in the source's plane covers it without reaching in front of it: of a convex shell on the far side, which
-  // is passed by below as a whole, one face does.
-  for (const std::uint32_t t : soup.coplanar(facet)) {
-    const std::uint32_t shell = soup.facets()[t].shell;
-    if (shell != kNone && soup.shells()[shell].convex && !add_candidate({t, kNone})) return false;
-  }
+  if (!add_flush_faces(facet)) return false;
   found.clear();
   soup.index().find(half_spaces, box, found);
   soup.prefetch(found);
   return add_items(found);
+}
+
+/// What lies in the source's plane covers it without reaching in front of it: of a convex shell on the far side, which
+/// is passed by as a whole, one face does. False when it hides all of the source.
+bool Viewpoint::State::add_flush_faces(std::uint32_t facet) {
+  for (const std::uint32_t t : soup.coplanar(facet)) {
+    const std::uint32_t shell = soup.facets()[t].shell;
+    if (shell != kNone && soup.shells()[shell].convex && !add_candidate({t, kNone})) return false;
+  }
+  return true;
 }
 
 /// Adds items of the index; false when they hide all of the current source.
@@ -238,7 +244,7 @@ bool Viewpoint::State::put_items(const Source& source, int source_facing, std::s
   candidates.facet = kNone;  // what is kept here holds for this piece only
   candidates.occluders.clear();
   set_source<double>(source.facet, source_facing);
-  return add_items(items);
+  return add_flush_faces(source.facet) && add_items(items);
 }
 
 /// `put` puts what may hide something of the source, prepared and seen from the side it is told; false: all is hidden.

@@ -104,7 +104,8 @@ PairFormFactor PairIntegrator::form_factor(std::size_t i, std::size_t j, const P
     open = blocked = partial = false;
     for (std::size_t k = 0; k < a.size(); ++k) {
       for (std::size_t l = i == j ? k + 1 : 0; l < b.size(); ++l) {
-        const Exchanged e = exchange(a[k], b[l], tolerance * share, tolerance * smaller * share, options, result.points);
+        const Exchanged e =
+            exchange(a[k], b[l], tolerance * share, tolerance * smaller * share, options, result.points);
         const double times = i == j ? 2 : 1;  // of a bent patch, what goes there and what comes back
         integral += times * e.integral;
         error += times * e.error;

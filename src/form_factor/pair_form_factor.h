@@ -44,8 +44,8 @@ class ExchangeScene {
 enum class PairClass : std::uint8_t { facing_away, open, blocked, partial };
 
 struct PairOptions {
-  double tolerance = 1e-12;  ///< of the form factors' errors, in both directions
-  double relative = 0;       ///< an error within this share of its form factor is good enough, too
+  double tolerance = 1e-12;        ///< of the form factors' errors, in both directions
+  double relative = 0;             ///< an error within this share of its form factor is good enough, too
   std::uint64_t points = 100'000;  ///< that an integral may take; one that needs more has not reached its tolerance
   bool both_ways = false;  ///< integrate over both patches, independently; errors then cover what the other one says
 };

@@ -1,5 +1,6 @@
 #pragma once
-// Rows of form factors between patches, every pair once: row i holds the pairs of patch i with itself and those after it.
+// Rows of form factors between patches, every pair once: row i holds the pairs of patch i with itself and those after
+// it.
 
 #include <array>
 #include <cstdint>
