@@ -46,6 +46,7 @@ struct Viewpoint::State {
   const PolygonSoup& soup;
   View view;
   std::uint64_t extended = 0;
+  double hidden_value = 0;  // of the last sum, when its own error hides it
   VisibleRegion<double> region;
   VisibleRegion<Extended> fine;
   std::array<Candidates, 4> recent;  // the facets of a polygon take turns
@@ -205,6 +206,7 @@ PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
   // What does not exceed its own error is 0 as far as can be told. A true form factor is never negative, so that
   // raising to 0 only removes error.
   const Real value = lambert.value(), error = lambert.error();
+  hidden_value = value > 0 && value <= error ? static_cast<double>(value) : 0;
   if (value > error) {
     result.F = static_cast<double>(value);
     result.error = static_cast<double>(error) * (1 + 4 * kRoundoff) + 2 * kRoundoff * result.F;
@@ -261,8 +263,8 @@ PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance,
     return result;
   }
   const PointFormFactor plain = sum<double>(result);
-  // A value that its own error hides is given as 0. All of these err the same way: they must not add up.
-  if (plain.error <= (plain.F > 0 ? tolerance : tolerance / 16)) return plain;
+  // All values that are given as 0 err the same way: they must not add up.
+  if (plain.error <= tolerance && hidden_value <= tolerance / 1024) return plain;
   ++extended;
   set_source<Extended>(source.facet, source_facing);
   add_candidates<Extended>(source.facet);

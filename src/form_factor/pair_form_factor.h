@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/radiator.h"
+#include "geometry/shaft.h"
 #include "geometry/viewpoint.h"
 #include "src/scene/patch_mesh.h"
 
@@ -81,6 +82,7 @@ class PairIntegrator {
                      const PairOptions& options, std::uint64_t& points);
 
   const ExchangeScene& scene_;
+  Shaft shaft_;
   Viewpoint view_;
   std::vector<std::uint32_t> items_;
 };
