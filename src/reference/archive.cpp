@@ -88,7 +88,7 @@ Handle create(const Draft& draft) {
 }  // namespace
 
 DamagedFile::DamagedFile(const std::filesystem::path& path, const std::string& what)
-    : InputError(path.string(), 0, what + "; make it anew or fetch an undamaged copy") {}
+    : InputError(path.string(), 0, what + "; make it anew or fetch an undamaged copy"), path_(path), damage_(what) {}
 
 struct ArchiveWriter::File {
   Draft draft;

@@ -21,6 +21,13 @@ namespace exitance {
 class DamagedFile : public InputError {
  public:
   DamagedFile(const std::filesystem::path& path, const std::string& what);
+
+  const std::filesystem::path& path() const { return path_; }
+  const std::string& damage() const { return damage_; }  ///< without the path, and without what to do about it
+
+ private:
+  std::filesystem::path path_;
+  std::string damage_;
 };
 
 class ArchiveWriter {
