@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <numeric>
@@ -42,8 +43,9 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-double GiB(std::uint64_t bytes) {
-  return static_cast<double>(bytes) * 0x1p-30;
+std::string size_in_words(std::uint64_t bytes) {
+  const double MiB = static_cast<double>(bytes) * 0x1p-20;
+  return MiB < 1024 ? fmt::format("{:.3g} MiB", MiB) : fmt::format("{:.3g} GiB", MiB / 1024);
 }
 
 /// A scene cut into patches.
@@ -178,13 +180,13 @@ class FormFactor {
     report_.estimated_bytes = pair_rows_bytes(scene.size(), expected_pair_density(scene));
     report_.available_bytes = memory_limit_ ? static_cast<std::uint64_t>(std::min(*memory_limit_ * 0x1p30, 0x1p63))
                                             : available_memory_bytes();
-    fmt::print(stderr, "memory: about {:.3g} GiB for the form factors of {} patches beside {:.3g} GiB for the scene\n",
-               GiB(report_.estimated_bytes), scene.size(), GiB(peak_memory_bytes()));
+    fmt::print(stderr, "memory: about {} for the form factors of {} patches, beside {} for the scene\n",
+               size_in_words(report_.estimated_bytes), scene.size(), size_in_words(peak_memory_bytes()));
     if (report_.estimated_bytes <= report_.available_bytes) return;
     throw LimitError(
-        fmt::format("the form factors of {} patches would take about {:.3g} GiB of memory and {:.3g} GiB may be used; "
+        fmt::format("the form factors of {} patches would take about {} of memory and {} may be used; "
                     "larger patches need less",
-                    scene.size(), GiB(report_.estimated_bytes), GiB(report_.available_bytes)));
+                    scene.size(), size_in_words(report_.estimated_bytes), size_in_words(report_.available_bytes)));
   }
 
   /// Everything the rows depend on.

@@ -80,7 +80,7 @@ double largest_amount(const std::vector<PairDefect>& defects) {
 }  // namespace
 
 std::optional<PairDefect> worst_of(const std::vector<PairDefect>& defects) {
-  const auto worst = std::ranges::max_element(defects, {}, [](const PairDefect& d) { return d.amount - d.allowed; });
+  const auto worst = std::ranges::max_element(defects, {}, &PairDefect::share);
   return worst == defects.end() ? std::nullopt : std::optional(*worst);
 }
 
@@ -129,15 +129,17 @@ std::string in_words(const FormFactorReport& r) {
   if (r.resumed_rows > 0) line("resumed", fmt::format("{} patches, without their times and points", r.resumed_rows));
   line("largest row sum", fmt::format("{:.15g}, {} rows are empty", r.matrix.largest_sum, r.matrix.empty_rows));
   if (const auto worst = closure(r)) {
-    line("closure defect",
-         fmt::format("{} at {}", compared(worst->amount, worst->allowed), row_in_words(r, worst->row)));
+    line("closure defect", fmt::format("{:.3g} at {}; against its errors worst: {} at {}", r.matrix.largest_defect,
+                                       row_in_words(r, r.matrix.largest_defect_row),
+                                       compared(worst->amount, worst->allowed), row_in_words(r, worst->row)));
   } else {
     line("closure defect", "none, " + why_no_closure(r));
   }
   if (const auto worst = worst_of(r.sample.reciprocity)) {
-    line("reciprocity defect", fmt::format("{} at patches {}, {}; {:.3g} at most ({} pairs integrated again)",
-                                           compared(worst->amount, worst->allowed), worst->i, worst->j,
-                                           largest_amount(r.sample.reciprocity), r.sample.reciprocity.size()));
+    line("reciprocity defect",
+         fmt::format("{:.3g} in {} pairs integrated again; against its errors worst: {} at patches {}, {}",
+                     largest_amount(r.sample.reciprocity), r.sample.reciprocity.size(),
+                     compared(worst->amount, worst->allowed), worst->i, worst->j));
   } else {
     line("reciprocity defect", "not measured, no pair is partial");
   }
@@ -186,7 +188,7 @@ std::string to_json(const FormFactorReport& r) {
                      {"largest_row_sum", r.matrix.largest_sum},
                      {"empty_rows", r.matrix.empty_rows},
                      {"closed", r.closed},
-                     {"closure_max_defect", closing ? Json(closing->amount) : Json(nullptr)},
+                     {"closure_max_defect", closing ? Json(r.matrix.largest_defect) : Json(nullptr)},
                      {"closure_worst", closing ? of_row(r, closing) : Json{{"none_because", why_no_closure(r)}}},
                      {"row_sum_worst", of_row(r, r.matrix.excess)},
                      {"entry_worst", r.matrix.entry ? Json{{"row", r.matrix.entry->row},

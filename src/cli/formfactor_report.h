@@ -49,7 +49,7 @@ struct FormFactorReport {
   std::map<std::string, std::string> options;
 };
 
-/// The worst of a sample: what exceeds the share of it that is allowed most. None of an empty one.
+/// The worst of a sample: what uses up most of its errors. None of an empty one.
 std::optional<PairDefect> worst_of(const std::vector<PairDefect>& defects);
 
 /// A line for each check that failed, in words.

@@ -9,9 +9,9 @@ namespace {
 /// Of an area, or of a quotient of two.
 constexpr double kAreaRounding = 0x1p-44;
 
-/// Keeps what exceeds its allowance most, of equals the first.
+/// Of equals the first.
 void keep_worse(std::optional<MatrixDefect>& worst, const MatrixDefect& other) {
-  if (!worst || other.amount - other.allowed > worst->amount - worst->allowed) worst = other;
+  if (!worst || other.share() > worst->share()) worst = other;
 }
 
 }  // namespace
@@ -35,7 +35,11 @@ MatrixCheck check_matrix(const FormFactorMatrix& matrix, std::span<const double>
     }
     check.largest_sum = std::max(check.largest_sum, sums[i]);
     keep_worse(check.excess, {i, 0, sums[i] - 1, errors});
-    keep_worse(check.closure, {i, 0, std::fabs(sums[i] - 1), errors});
+    const double defect = std::fabs(sums[i] - 1);
+    keep_worse(check.closure, {i, 0, defect, errors});
+    if (defect <= check.largest_defect) continue;
+    check.largest_defect = defect;
+    check.largest_defect_row = i;
   }
   return check;
 }

@@ -118,6 +118,10 @@ Recomputed recompute(const ExchangeScene& scene, Viewpoint& view, const SampledP
   return result;
 }
 
+bool by_share(const PairDefect& a, const PairDefect& b) {
+  return a.share() < b.share();
+}
+
 }  // namespace
 
 PairSample sample_pairs(const ExchangeScene& scene, std::span<const PairRows> rows, const PairOptions& options,
@@ -134,16 +138,11 @@ PairSample sample_pairs(const ExchangeScene& scene, std::span<const PairRows> ro
       const SampledPair& pair = pairs[k];
       const double smaller = std::min(scene.area(pair.i), scene.area(pair.j));
       const Recomputed again = recompute(scene, views.local(), pair, options);
-      PairDefect& defect = sample.reciprocity[k] = {pair.i, pair.j, 0, 0};
-      double worst = -1;  // of the two, by what is allowed
-      for (const Exchange& other : {again.over_i, again.over_j}) {
-        const double apart = std::fabs(other.integral - pair.found.integral), allowed = other.error + pair.found.error;
-        const double share = apart == 0 ? 0 : apart / allowed;
-        if (share <= worst) continue;
-        worst = share;
-        defect.amount = apart / smaller;
-        defect.allowed = allowed / smaller;
-      }
+      const auto against = [&](const Exchange& other) {
+        return PairDefect{pair.i, pair.j, std::fabs(other.integral - pair.found.integral) / smaller,
+                          (other.error + pair.found.error) / smaller};
+      };
+      sample.reciprocity[k] = std::max(against(again.over_i), against(again.over_j), by_share);
       sample.beyond_unobstructed[k] = {pair.i, pair.j, (pair.found.integral - again.unobstructed.integral) / smaller,
                                        (pair.found.error + again.unobstructed.error) / smaller};
     }

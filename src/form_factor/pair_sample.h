@@ -16,12 +16,14 @@ struct PairDefect {
   double amount = 0, allowed = 0;
 
   bool holds() const { return amount <= allowed; }
+  /// How much of what is allowed is used up; more than 1 does not hold.
+  double share() const { return amount == 0 ? 0 : amount / allowed; }
 };
 
 /// One defect a pair, in the order of the sample.
 struct PairSample {
-  /// |A_i F_ij − what is found by integrating over i, or over j|, the larger one. One of them is the run's own way, the
-  /// other is independent of it.
+  /// |A_i F_ij − what is found by integrating over i, or over j|, whichever uses up more of its errors. One of them is
+  /// the run's own way, the other is independent of it.
   std::vector<PairDefect> reciprocity;
   /// By how much the pair exchanges more than it would with nothing in between; below 0 where it is less.
   std::vector<PairDefect> beyond_unobstructed;
