@@ -1,0 +1,496 @@
+#include "geometry/shaft.h"
+
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "tests/geometry/placement.h"
+
+namespace exitance {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using Rational = Kernel::FT;
+using Point = Kernel::Point_3;
+using Vector = Kernel::Vector_3;
+using Points = std::vector<Point>;
+using Overlap = Shaft::Overlap;
+
+// --- The oracle: everything constructed with rational coordinates -------------------------------------------------
+
+Point exact(const Vec3& p) {
+  return {p.x, p.y, p.z};
+}
+
+/// The half-space normal · (v − origin) ≥ 0.
+struct ExactSide {
+  Point origin;
+  Vector normal;
+  Rational value(const Point& p) const { return normal * (p - origin); }
+  int sign(const Point& p) const { return static_cast<int>(CGAL::sign(value(p))); }
+};
+
+ExactSide plane_of(const Points& loop) {
+  for (std::size_t i = 2; i < loop.size(); ++i) {
+    for (std::size_t j = 1; j < i; ++j) {
+      const Vector n = CGAL::cross_product(loop[j] - loop[0], loop[i] - loop[0]);
+      if (n != CGAL::NULL_VECTOR) return {loop[0], n};
+    }
+  }
+  throw std::logic_error("a facet without area");
+}
+
+Points clip(const Points& loop, const ExactSide& side) {
+  Points kept;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Point &p = loop[i], &q = loop[(i + 1) % loop.size()];
+    const Rational at_p = side.value(p), at_q = side.value(q);
+    if (at_p >= 0) kept.push_back(p);
+    if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) kept.push_back(p + (at_p / (at_p - at_q)) * (q - p));
+  }
+  return kept;
+}
+
+Point mean(const Points& points) {
+  Vector sum = CGAL::NULL_VECTOR;
+  for (const Point& p : points) sum = sum + (p - CGAL::ORIGIN);
+  return CGAL::ORIGIN + sum / Rational(static_cast<int>(points.size()));
+}
+
+/// Whether the relative interior of a convex loop meets the open intersection of half-spaces.
+bool meets(const Points& loop, const std::vector<ExactSide>& sides) {
+  Points left = loop;
+  for (const ExactSide& s : sides) {
+    left = clip(left, s);
+    if (left.empty()) return false;
+  }
+  const Point middle = mean(left);
+  return std::ranges::all_of(sides, [&](const ExactSide& s) { return s.sign(middle) > 0; });
+}
+
+struct ExactEnd {
+  std::uint32_t facet = 0;
+  Points points;
+  ExactSide plane;
+};
+
+/// All planes through three points of both that have the others on one side, and the planes of both.
+std::vector<ExactSide> sides_of_hull(const ExactEnd& a, const ExactEnd& b) {
+  Points all = a.points;
+  all.insert(all.end(), b.points.begin(), b.points.end());
+  std::vector<ExactSide> sides{a.plane, b.plane};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      for (std::size_t k = 0; k < j; ++k) {
+        ExactSide side{all[i], CGAL::cross_product(all[j] - all[i], all[k] - all[i])};
+        if (side.normal == CGAL::NULL_VECTOR) continue;
+        bool in = false, out = false;
+        for (const Point& p : all) {
+          const int s = side.sign(p);
+          in = in || s > 0;
+          out = out || s < 0;
+          if (in && out) break;
+        }
+        if (in && out) continue;
+        if (out) side.normal = -side.normal;
+        sides.push_back(side);
+      }
+    }
+  }
+  return sides;
+}
+
+struct ExactItem {
+  std::vector<Points> loops;  ///< one, or a convex shell's
+  std::vector<ExactSide> planes;
+  bool solid = false;
+};
+
+/// Whether the segment meets the closed facet; a segment in its plane tells nothing and counts as meeting it.
+bool meets_facet(const Points& loop, const ExactSide& plane, const Point& from, const Point& to) {
+  const Rational at_from = plane.value(from), at_to = plane.value(to);
+  if (at_from == 0 && at_to == 0) return true;
+  if (CGAL::sign(at_from) * CGAL::sign(at_to) > 0) return false;
+  const Point p = from + (at_from / (at_from - at_to)) * (to - from);
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Point &u = loop[k], &v = loop[(k + 1) % loop.size()];
+    if (CGAL::cross_product(v - u, p - u) * plane.normal < 0) return false;
+  }
+  return true;
+}
+
+bool meets_solid(const ExactItem& solid, const Point& from, const Point& to) {
+  Rational first = 0, last = 1;
+  for (const ExactSide& s : solid.planes) {
+    const Rational at_from = s.value(from), at_to = s.value(to);  // inside where negative
+    if (at_from > 0 && at_to > 0) return false;
+    if (at_from <= 0 && at_to <= 0) continue;
+    const Rational t = at_from / (at_from - at_to);
+    if (at_from > 0) first = std::max(first, t);
+    if (at_to > 0) last = std::min(last, t);
+  }
+  return first <= last;
+}
+
+/// Whether a point of the loop lies inside the solid.
+bool reaches_into(const Points& loop, const ExactItem& solid) {
+  std::vector<ExactSide> inner;
+  for (const ExactSide& s : solid.planes) inner.push_back({s.origin, -s.normal});
+  return meets(loop, inner);
+}
+
+bool blocks_all(const ExactEnd& a, const ExactEnd& b, const ExactItem& item) {
+  for (const Point& p : a.points) {
+    for (const Point& q : b.points) {
+      if (!(item.solid ? meets_solid(item, p, q) : meets_facet(item.loops[0], item.planes[0], p, q))) return false;
+    }
+  }
+  return !item.solid || !reaches_into(a.points, item) || !reaches_into(b.points, item);
+}
+
+/// Whether facets in one plane overlap on a positive area above some plane, and whether the first holds all of the
+/// second.
+struct Contact {
+  bool overlap = true, holds = true;
+};
+Contact contact_of(const Points& facet, const ExactSide& plane, const Points& end, const ExactSide& above) {
+  Contact contact;
+  Points left = clip(end, above);
+  for (std::size_t k = 0; k < facet.size(); ++k) {
+    const Point &u = facet[k], &v = facet[(k + 1) % facet.size()];
+    const ExactSide inner{u, CGAL::cross_product(plane.normal, v - u)};
+    contact.holds = contact.holds && std::ranges::all_of(end, [&](const Point& p) { return inner.sign(p) >= 0; });
+    left = clip(left, inner);
+  }
+  contact.overlap = false;
+  for (std::size_t i = 2; i < left.size(); ++i) {
+    contact.overlap =
+        contact.overlap || CGAL::cross_product(left[i - 1] - left[0], left[i] - left[0]) != CGAL::NULL_VECTOR;
+  }
+  contact.holds = contact.holds && contact.overlap;
+  return contact;
+}
+
+class Oracle {
+ public:
+  explicit Oracle(const PolygonSoup& soup) : soup_(soup) {
+    for (const Facet& f : soup.facets()) {
+      Points loop;
+      for (const Corner& c : soup.corners(f)) loop.push_back(exact(c.at));
+      planes_.push_back(plane_of(loop));
+      loops_.push_back(std::move(loop));
+    }
+  }
+
+  ExactEnd end(const ShaftEnd& given) const {
+    ExactEnd end{given.facet, loops_[given.facet], planes_[given.facet]};
+    if (!given.loop.empty()) end.points.clear();
+    for (const Vec3& p : given.loop) end.points.push_back(exact(p));
+    return end;
+  }
+  const Points& loop(std::uint32_t facet) const { return loops_[facet]; }
+  const ExactSide& plane(std::uint32_t facet) const { return planes_[facet]; }
+  ExactItem item(std::uint32_t index) const {
+    if (index < loops_.size()) return {{loops_[index]}, {planes_[index]}, false};
+    ExactItem item;
+    item.solid = true;
+    for (const std::uint32_t f : soup_.shells()[index - loops_.size()].facets) {
+      item.loops.push_back(loops_[f]);
+      item.planes.push_back(planes_[f]);
+    }
+    return item;
+  }
+  std::vector<std::uint32_t> items() const {
+    std::vector<std::uint32_t> all;
+    soup_.index().find(soup_.index().bounds(), all);
+    std::ranges::sort(all);
+    return all;
+  }
+
+  bool face_each_other(const ExactEnd& a, const ExactEnd& b) const {
+    const auto above = [](const ExactEnd& end, const ExactEnd& other) {
+      return std::ranges::any_of(end.points, [&](const Point& p) { return other.plane.sign(p) > 0; });
+    };
+    return above(a, b) && above(b, a);
+  }
+
+  /// `sides` of the ends' hull.
+  Overlap overlap(const ExactEnd& a, const ExactEnd& b, const std::vector<ExactSide>& sides,
+                  std::uint32_t index) const {
+    const ExactItem candidate = item(index);
+    Overlap most = Overlap::outside;
+    bool in_plane_of_end = false;
+    for (const ExactEnd* end : {&a, &b}) {
+      for (const std::uint32_t t : soup_.coplanar(end->facet)) {
+        const bool concerned = index < loops_.size() ? t == index : soup_.facets()[t].shell == index - loops_.size();
+        in_plane_of_end = in_plane_of_end || concerned;
+        if (!concerned || !soup_.covers(t, end->facet)) continue;
+        const Contact contact = contact_of(loops_[t], planes_[t], end->points, end == &a ? b.plane : a.plane);
+        if (contact.overlap) most = std::max(most, contact.holds ? Overlap::blocking : Overlap::partial);
+      }
+    }
+    if (in_plane_of_end && !candidate.solid) return most;  // even where it is so up to rounding only
+    if (std::ranges::none_of(candidate.loops, [&](const Points& l) { return meets(l, sides); })) return most;
+    return std::max(most, blocks_all(a, b, candidate) ? Overlap::blocking : Overlap::partial);
+  }
+
+ private:
+  const PolygonSoup& soup_;
+  std::vector<Points> loops_;
+  std::vector<ExactSide> planes_;
+};
+
+/// Looks along lines between interior points of the ends, of what each sees of the other, and says how many there were
+/// and how many cross the item strictly between.
+struct Lines {
+  int seen = 0, blocked = 0;
+};
+Lines look_along_lines(const ExactEnd& a, const ExactEnd& b, const ExactItem& item, int count, Random& random) {
+  const auto inner_point = [&](const Points& points) {
+    Vector sum = CGAL::NULL_VECTOR;
+    int weights = 0;
+    for (const Point& p : points) {
+      const int w = random.whole(0, 3) == 0 ? 1 : random.whole(1, 400);
+      sum = sum + Rational(w) * (p - CGAL::ORIGIN);
+      weights += w;
+    }
+    return CGAL::ORIGIN + sum / Rational(weights);
+  };
+  Lines lines;
+  for (int k = 0; k < count; ++k) {
+    const Point p = inner_point(a.points), q = inner_point(b.points);
+    if (a.plane.sign(q) <= 0 || b.plane.sign(p) <= 0) continue;
+    ++lines.seen;
+    bool blocked = false;
+    for (std::size_t f = 0; f < item.loops.size() && !blocked; ++f) {
+      blocked = item.planes[f].sign(p) * item.planes[f].sign(q) < 0 && meets_facet(item.loops[f], item.planes[f], p, q);
+    }
+    lines.blocked += blocked;
+  }
+  return lines;
+}
+
+// --- Scenes -------------------------------------------------------------------------------------------------------
+
+/// A scene of a few small things on a lattice, so that nearly everything touches, is coplanar or in line with
+/// something.
+struct Things {
+  std::vector<Polygon> polygons;
+  std::vector<Role> roles;
+  void add(const Polygon& p, Role role) {
+    polygons.push_back(p);
+    roles.push_back(role);
+  }
+};
+
+Vec3 lattice_vector(Random& random, int size) {
+  const auto part = [&] { return static_cast<double>(random.whole(-size, size)); };
+  return {part(), part(), part()};
+}
+
+Vec3 axis_vector(Random& random, int axis, int size) {
+  Vec3 v;
+  v[axis] = static_cast<double>(random.whole(1, size));
+  return v;
+}
+
+void add_lattice_flat(Things& things, Random& random, Role role) {
+  const Vec3 p = lattice_vector(random, 3);
+  const bool along_axes = random.whole(0, 2) > 0;
+  const int axis = random.whole(0, 2);
+  Vec3 u = along_axes ? axis_vector(random, axis, 4) : lattice_vector(random, 3);
+  Vec3 v = along_axes ? axis_vector(random, (axis + 1) % 3, 4) : lattice_vector(random, 3);
+  if (random.whole(0, 1) == 0) std::swap(u, v);
+  if (cross(u, v) == Vec3{}) return;
+  switch (random.whole(0, 4)) {
+    case 0:
+      return things.add({{p, p + u, p + v}, {}}, role);
+    case 1:  // T-junction
+      return things.add({{p, p + 0.5 * u, p + u, p + v}, {}}, role);
+    case 2:
+      return things.add({{p, p + 2 * u, p + 2 * u + v, p + u + 2 * v, p + 2 * v}, {}}, role);
+    default:
+      return things.add({{p, p + u, p + u + v, p + v}, {}}, role);
+  }
+}
+
+/// A parallelepiped; u, v, w turn to the right.
+void add_solid(Things& things, const Vec3& p, const Vec3& u, const Vec3& v, const Vec3& w, Role role) {
+  for (const auto& [o, s, t] :
+       {std::tuple{p, v, u}, {p, w, v}, {p, u, w}, {p + w, u, v}, {p + u, v, w}, {p + v, w, u}}) {
+    things.add({{o, o + s, o + s + t, o + t}, {}}, role);
+  }
+}
+
+void add_lattice_solid(Things& things, Random& random, Role role) {
+  const Vec3 p = lattice_vector(random, 3);
+  const bool along_axes = random.whole(0, 2) > 0;
+  const Vec3 u = along_axes ? axis_vector(random, 0, 3) : lattice_vector(random, 2);
+  Vec3 v = along_axes ? axis_vector(random, 1, 3) : lattice_vector(random, 2);
+  Vec3 w = along_axes ? axis_vector(random, 2, 3) : lattice_vector(random, 2);
+  const double volume = dot(cross(u, v), w);
+  if (volume == 0) return;
+  if (volume < 0) std::swap(v, w);
+  if (random.whole(0, 3) == 0) {
+    things.add({{p, p + v, p + u}, {}}, role);
+    things.add({{p, p + w, p + v}, {}}, role);
+    things.add({{p, p + u, p + w}, {}}, role);
+    things.add({{p + u, p + v, p + w}, {}}, role);
+    return;
+  }
+  add_solid(things, p, u, v, w, role);
+}
+
+/// Small ends on either side of large things.
+Things wall_of_things(Random& random) {
+  Things things;
+  const auto half = [&](int low, int high) { return 0.5 * static_cast<double>(random.whole(low, high)); };
+  for (const double side : {-1.0, 1.0}) {
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 p{half(-3, 3), half(-3, 3), -2.0 * side}, u{half(1, 3), half(-1, 1), side * half(0, 1)},
+          v{half(-1, 1), side * half(1, 3), half(0, 1)};
+      things.add(random.whole(0, 1) == 0 ? Polygon{{p, p + u, p + v}, {}} : Polygon{{p, p + u, p + u + v, p + v}, {}},
+                 Role::patch);
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 p{-half(2, 7), -half(2, 7), half(-3, 3)}, u{half(4, 16), half(-1, 1), half(-1, 1)},
+        v{half(-1, 1), half(4, 16), half(-1, 1)}, w{half(-2, 2), half(-2, 2), half(1, 2)};
+    if (random.whole(0, 1) == 0) {
+      things.add({{p, p + u, p + u + v, p + v}, {}}, Role::patch);
+    } else {
+      add_solid(things, p, u, v, w, Role::patch);
+    }
+  }
+  return things;
+}
+
+Things random_things(Random& random) {
+  if (random.whole(0, 2) == 0) return wall_of_things(random);
+  Things things;
+  const int flats = random.whole(2, 5), solids = random.whole(0, 2);
+  for (int k = 0; k < flats; ++k) {
+    const int kind = random.whole(0, 5);
+    add_lattice_flat(things, random, kind == 0 ? Role::sheet : kind == 1 ? Role::unoccluding : Role::patch);
+  }
+  for (int k = 0; k < solids; ++k)
+    add_lattice_solid(things, random, random.whole(0, 1) == 0 ? Role::patch : Role::solid_face);
+  return things;
+}
+
+struct Tally {
+  std::map<Overlap, int> overlaps;
+  int not_facing = 0, undecided_blocking = 0, lines = 0;
+  int pairs = 0;
+};
+
+/// Whether a shell is separated from one of the ends by a plane that Shaft looks at.
+bool plainly_separated(const ExactEnd& a, const ExactEnd& b, const ExactItem& item) {
+  for (const ExactEnd* end : {&a, &b}) {
+    const auto in_front = [](const Points& points, const ExactSide& s) {
+      return std::ranges::all_of(points, [&](const Point& p) { return s.sign(p) >= 0; });
+    };
+    if (std::ranges::all_of(item.loops, [&](const Points& l) { return in_front(l, end->plane); })) return true;
+    if (std::ranges::any_of(item.planes, [&](const ExactSide& s) { return in_front(end->points, s); })) return true;
+  }
+  return false;
+}
+
+/// Compares with the oracle everything that Shaft says of a pair of ends.
+void check_pair(const PolygonSoup& soup, const Oracle& oracle, Shaft& shaft, const ShaftEnd& given_a,
+                const ShaftEnd& given_b, Random& random, Tally& tally) {
+  const ExactEnd a = oracle.end(given_a), b = oracle.end(given_b);
+  shaft.reset(given_a, given_b);
+  ASSERT_EQ(shaft.face_each_other(), oracle.face_each_other(a, b)) << given_a.facet << ' ' << given_b.facet;
+  ++tally.pairs;
+  std::vector<std::uint32_t> found;
+  const Overlap most = shaft.find_occluders(found);
+  if (!shaft.face_each_other()) {
+    ++tally.not_facing;
+    EXPECT_TRUE(found.empty());
+    return;
+  }
+  const auto sides = sides_of_hull(a, b);
+  std::vector<std::uint32_t> expected;
+  Overlap expected_most = Overlap::outside;
+  for (const std::uint32_t index : oracle.items()) {
+    const Overlap overlap = shaft.overlap(index);
+    Overlap truth = oracle.overlap(a, b, sides, index);
+    const ExactItem item = oracle.item(index);
+    const bool own = index == a.facet || index == b.facet;
+    if (truth == Overlap::blocking && overlap == Overlap::partial && item.solid && !plainly_separated(a, b, item)) {
+      ++tally.undecided_blocking;
+      truth = Overlap::partial;
+    }
+    ++tally.overlaps[truth];
+    ASSERT_EQ(overlap, truth) << "item " << index << " of " << soup.facets().size() << " facets, ends " << given_a.facet
+                              << ' ' << given_b.facet;
+    if (truth != Overlap::outside) expected.push_back(index);
+    expected_most = std::max(expected_most, truth);
+    const bool contact = std::ranges::any_of(std::array{&a, &b}, [&](const ExactEnd* end) {
+      return std::ranges::any_of(soup.coplanar(end->facet), [&](std::uint32_t t) {
+        return index < soup.facets().size() ? t == index : soup.facets()[t].shell == index - soup.facets().size();
+      });
+    });
+    if (own || contact || random.whole(0, 3) != 0) continue;
+    const Lines lines = look_along_lines(a, b, item, 12, random);
+    tally.lines += lines.seen;
+    if (overlap == Overlap::outside) {
+      ASSERT_EQ(lines.blocked, 0);
+    }
+    if (overlap == Overlap::blocking) {
+      ASSERT_EQ(lines.blocked, lines.seen);
+    }
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(most, expected_most);
+}
+
+/// Without what rounding has made no polygon.
+Things placed(const Placement& placement, const Things& things) {
+  Things result;
+  for (std::size_t k = 0; k < things.polygons.size(); ++k) {
+    const Polygon p = placement(things.polygons[k]);
+    if (find_defect(p) == PolygonDefect::none) result.add(p, things.roles[k]);
+  }
+  return result;
+}
+
+void expect_all_kinds(const Tally& tally) {
+  EXPECT_GT(tally.not_facing, tally.pairs / 20);
+  for (const Overlap o : {Overlap::outside, Overlap::partial, Overlap::blocking}) {
+    EXPECT_GT(tally.overlaps.at(o), 20) << static_cast<int>(o);
+  }
+  EXPECT_LT(tally.undecided_blocking, 1 + tally.overlaps.at(Overlap::blocking) / 50);
+}
+
+class ShaftPlacement : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(ShaftPlacement, AgreesWithTheOracle) {
+  const Placement placement = placements("shaft")[GetParam()];
+  Random random("shaft/" + placement.name);
+  Tally tally;
+  for (int scene = 0; scene < 60 && !HasFatalFailure(); ++scene) {
+    const Things things = placed(placement, random_things(random));
+    const PolygonSoup soup(things.polygons, things.roles);
+    const Oracle oracle(soup);
+    Shaft shaft(soup);
+    const auto n = static_cast<std::uint32_t>(soup.facets().size());
+    for (std::uint32_t i = 0; i < n; ++i) {
+      for (std::uint32_t j = 0; j < n; ++j) {
+        if (soup.facets()[i].polygon == soup.facets()[j].polygon || random.whole(0, 3) != 0) continue;
+        check_pair(soup, oracle, shaft, {i, {}}, {j, {}}, random, tally);
+        ASSERT_FALSE(HasFatalFailure()) << "scene " << scene;
+      }
+    }
+  }
+  expect_all_kinds(tally);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShaftPlacement, testing::Range<std::size_t>(0, 9));
+
+}  // namespace
+}  // namespace exitance
