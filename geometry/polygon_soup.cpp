@@ -226,13 +226,6 @@ void PolygonSoup::find_coplanar() {
   }
 }
 
-bool PolygonSoup::covers_back(std::uint32_t t, std::uint32_t f) const {
-  const std::uint32_t top = facets_[t].polygon, bottom = facets_[f].polygon;
-  if (top == bottom || roles_[top] != Role::patch || roles_[bottom] != Role::patch) return false;
-  const bool same_facing = dot(facets_[t].plane.normal, facets_[f].plane.normal) > 0;
-  return same_facing ? top < bottom : !closed_[bottom];
-}
-
 /// Which polygons bound matter on their backs: those of closed pieces of surface, whether they look out (solids) or in
 /// (rooms). The two sides of a sheet enclose nothing.
 void PolygonSoup::find_closed(std::span<const Polygon> polygons) {
@@ -279,19 +272,28 @@ void PolygonSoup::prefetch(std::span<const std::uint32_t> items) const {
   }
 }
 
+/// Where a facet stands among those that lie in its plane, seen from one side: what is less is nearer. It is one order
+/// for all of them, so that wherever they overlap exactly one is seen.
+std::pair<int, std::int64_t> PolygonSoup::depth_in_plane(std::uint32_t f, bool from_front) const {
+  enum { sheet, matter_before, patch, matter_behind, back_of_patch };
+  const std::int64_t polygon = facets_[f].polygon;
+  const Role role = roles_[facets_[f].polygon];
+  if (role == Role::sheet) return {sheet, polygon};
+  if (role == Role::solid_face) return {from_front ? matter_behind : matter_before, polygon};
+  if (from_front) return {patch, -polygon};
+  return {closed_[facets_[f].polygon] ? matter_before : back_of_patch, polygon};
+}
+
 bool PolygonSoup::covers(std::uint32_t t, std::uint32_t f) const {
   if (facets_[t].polygon == facets_[f].polygon) return false;
   const bool same_facing = dot(facets_[t].plane.normal, facets_[f].plane.normal) > 0;
-  switch (roles_[facets_[t].polygon]) {
-    case Role::patch:
-      return same_facing ? facets_[t].polygon > facets_[f].polygon : closed_[facets_[t].polygon];
-    case Role::sheet:
-      return true;
-    case Role::solid_face:
-      return !same_facing;
-    default:
-      return false;
-  }
+  return depth_in_plane(t, same_facing) < depth_in_plane(f, true);
+}
+
+bool PolygonSoup::covers_back(std::uint32_t t, std::uint32_t f) const {
+  if (facets_[t].polygon == facets_[f].polygon || roles_[facets_[f].polygon] == Role::unoccluding) return false;
+  const bool same_facing = dot(facets_[t].plane.normal, facets_[f].plane.normal) > 0;
+  return depth_in_plane(t, !same_facing) < depth_in_plane(f, false);
 }
 
 }  // namespace exitance

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/polygon.h"
@@ -97,11 +98,13 @@ class PolygonSoup {
     return {coplanar_.data() + coplanar_first_[f], coplanar_.data() + coplanar_first_[f + 1]};
   }
 
-  /// Whether facet t, one of coplanar(f), covers f where they overlap. Facets of one polygon never do.
+  /// Whether facet t, one of coplanar(f), covers the front of f where they overlap (Role). Facets of one polygon never
+  /// do.
   bool covers(std::uint32_t t, std::uint32_t f) const;
 
-  /// Whether facet t, one of coplanar(f), hides the back of f where they overlap: the other side of a sheet does, and
-  /// of patches that face the same way the earlier one, which lies beneath.
+  /// Whether facet t, one of coplanar(f), hides the back of f where they overlap, so that of all in a plane one is seen
+  /// from either side: the other side of a sheet does, and of backs that of matter, else the earlier one, which lies
+  /// beneath. What is unoccluding is hidden on its front only.
   bool covers_back(std::uint32_t t, std::uint32_t f) const;
 
   /// Of all that occludes: item k is facet k, or shell k − facets().size() where that is convex; the facets of convex
@@ -122,6 +125,7 @@ class PolygonSoup {
   void find_coplanar();
   void find_closed(std::span<const Polygon> polygons);
   void build_index();
+  std::pair<int, std::int64_t> depth_in_plane(std::uint32_t f, bool from_front) const;
 
   std::vector<Vec3> vertices_;
   std::vector<Facet> facets_;

@@ -10,8 +10,8 @@ View::View(const PolygonSoup& soup) : soup_(soup), facets_(soup.facets().size())
 void View::look_from(const Receiver& receiver) {
   receiver_ = receiver;
   if (++epoch_ == 0) {
-    std::fill(facets_.begin(), facets_.end(), Seen{});
-    std::fill(vertices_.begin(), vertices_.end(), Seen{});
+    std::fill(facets_.begin(), facets_.end(), SeenFacet{});
+    std::fill(vertices_.begin(), vertices_.end(), SeenVertex{});
     epoch_ = 1;
   }
   covered_ = false;
@@ -28,19 +28,20 @@ bool View::excluded(std::uint32_t facet) const {
   return std::binary_search(coplanar.begin(), coplanar.end(), facet);
 }
 
-int View::facing(std::uint32_t facet) {
-  Seen& seen = facets_[facet];
+const View::SeenFacet& View::seen(std::uint32_t facet) {
+  SeenFacet& seen = facets_[facet];
   if (seen.epoch != epoch_) {
     seen.epoch = epoch_;
     const Facet& f = soup_.facets()[facet];
-    seen.sign = excluded(facet) ? std::int8_t{0} : static_cast<std::int8_t>(side_of(f.plane, receiver_.point, counts_));
-    if (seen.sign < 0 && f.shell != kNone && outside(soup_.shells()[f.shell])) seen.sign = 0;
+    seen.side = static_cast<std::int8_t>(side_of(f.plane, receiver_.point, counts_));
+    const bool back_of_shell = seen.side < 0 && f.shell != kNone && outside(soup_.shells()[f.shell]);
+    seen.facing = back_of_shell || excluded(facet) ? std::int8_t{0} : seen.side;
   }
-  return seen.sign;
+  return seen;
 }
 
 int View::horizon(std::uint32_t vertex) {
-  Seen& seen = vertices_[vertex];
+  SeenVertex& seen = vertices_[vertex];
   if (seen.epoch != epoch_) {
     seen.epoch = epoch_;
     seen.sign =

@@ -36,7 +36,10 @@ class View {
 
   /// The side from which an occluding facet is seen: +1 front, −1 back, 0 when it hides nothing from here that others
   /// do not hide: excluded, edge-on, or the back face of a shell that the point is outside of.
-  int facing(std::uint32_t facet);
+  int facing(std::uint32_t facet) { return seen(facet).facing; }
+
+  /// The side of a facet's plane on which the point lies as it is rounded, whether the facet hides something or not.
+  int side(std::uint32_t facet) { return seen(facet).side; }
 
   /// Side of a vertex against the receiver's horizon: +1 above.
   int horizon(std::uint32_t vertex);
@@ -49,11 +52,16 @@ class View {
   bool covered() const { return covered_; }
 
  private:
-  struct Seen {
+  struct SeenFacet {
+    std::uint32_t epoch = 0;
+    std::int8_t facing = 0, side = 0;
+  };
+  struct SeenVertex {
     std::uint32_t epoch = 0;
     std::int8_t sign = 0;
   };
 
+  const SeenFacet& seen(std::uint32_t facet);
   bool holds_receiver(std::uint32_t facet);
 
   const PolygonSoup& soup_;
@@ -61,7 +69,8 @@ class View {
   StageCounts counts_;
   std::uint32_t epoch_ = 0;
   bool covered_ = false;
-  std::vector<Seen> facets_, vertices_;
+  std::vector<SeenFacet> facets_;
+  std::vector<SeenVertex> vertices_;
 };
 
 }  // namespace exitance

@@ -32,7 +32,8 @@ class ViewCones {
     return cone;
   }
 
-  /// The silhouette of a convex shell: the edges between faces that are seen from the front and others.
+  /// The silhouette of a convex shell: the edges between faces that are seen from the front and others. A face in the
+  /// receiver's plane counts by the side on which the rounded point lies; without it the ring might not be convex.
   const Cone<Real>& of_shell(std::uint32_t shell) {
     bool is_new = false;
     Cone<Real>& cone = cached(static_cast<std::uint32_t>(soup_.facets().size()) + shell, is_new);
@@ -83,7 +84,7 @@ class ViewCones {
   void set_silhouette(Cone<Real>& cone, std::uint32_t shell) {
     ring_.clear();
     for (const ShellEdge& edge : soup_.shells()[shell].edges) {
-      const bool left = view_.facing(edge.left) > 0, right = view_.facing(edge.right) > 0;
+      const bool left = view_.side(edge.left) > 0, right = view_.side(edge.right) > 0;
       if (left != right) ring_.push_back(left ? std::pair(edge.from, edge.to) : std::pair(edge.to, edge.from));
     }
     // The edges form one ring: each in turn gets behind it the one that starts where it ends.

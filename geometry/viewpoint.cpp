@@ -30,6 +30,7 @@ struct Viewpoint::State {
   bool add_candidate(const Occluder& occluder);
   bool hidden_by_recent();
   bool find_candidates(std::uint32_t facet);
+  bool add_flush_faces(std::uint32_t facet);
   bool add_items(std::span<const std::uint32_t> items);
   bool prepare(const Source& source, int& source_facing);
   bool put_occluders(const Source& source, int source_facing);
@@ -45,6 +46,7 @@ struct Viewpoint::State {
   const PolygonSoup& soup;
   View view;
   std::uint64_t extended = 0;
+  double hidden_value = 0;  // of the last sum, when its own error hides it
   VisibleRegion<double> region;
   VisibleRegion<Extended> fine;
   std::array<Candidates, 4> recent;  // the facets of a polygon take turns
@@ -121,10 +123,21 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   Box box;
   box.extend(view.receiver().point);
   for (const Vec3* v : corners) box.extend(*v);
+  if (!add_flush_faces(facet)) return false;
   found.clear();
   soup.index().find(half_spaces, box, found);
   soup.prefetch(found);
   return add_items(found);
+}
+
+/// What lies in the source's plane covers it without reaching in front of it: of a convex shell on the far side, which
+/// is passed by as a whole, one face does. False when it hides all of the source.
+bool Viewpoint::State::add_flush_faces(std::uint32_t facet) {
+  for (const std::uint32_t t : soup.coplanar(facet)) {
+    const std::uint32_t shell = soup.facets()[t].shell;
+    if (shell != kNone && soup.shells()[shell].convex && !add_candidate({t, kNone})) return false;
+  }
+  return true;
 }
 
 /// Adds items of the index; false when they hide all of the current source.
@@ -193,6 +206,7 @@ PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
   // What does not exceed its own error is 0 as far as can be told. A true form factor is never negative, so that
   // raising to 0 only removes error.
   const Real value = lambert.value(), error = lambert.error();
+  hidden_value = value > 0 && value <= error ? static_cast<double>(value) : 0;
   if (value > error) {
     result.F = static_cast<double>(value);
     result.error = static_cast<double>(error) * (1 + 4 * kRoundoff) + 2 * kRoundoff * result.F;
@@ -232,7 +246,7 @@ bool Viewpoint::State::put_items(const Source& source, int source_facing, std::s
   candidates.facet = kNone;  // what is kept here holds for this piece only
   candidates.occluders.clear();
   set_source<double>(source.facet, source_facing);
-  return add_items(items);
+  return add_flush_faces(source.facet) && add_items(items);
 }
 
 /// `put` puts what may hide something of the source, prepared and seen from the side it is told; false: all is hidden.
@@ -249,7 +263,8 @@ PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance,
     return result;
   }
   const PointFormFactor plain = sum<double>(result);
-  if (plain.error <= tolerance) return plain;
+  // All values that are given as 0 err the same way: they must not add up.
+  if (plain.error <= tolerance && hidden_value <= tolerance / 1024) return plain;
   ++extended;
   set_source<Extended>(source.facet, source_facing);
   add_candidates<Extended>(source.facet);

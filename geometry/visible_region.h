@@ -320,7 +320,10 @@ bool VisibleRegion<Real>::goes_on(const ConeSide<Real>& side, const Facet& occlu
   const std::uint32_t n = side.across;
   if (n == kNone || n == source_facet_ || view_.facing(n) != facing) return false;
   const Facet& neighbour = soup_.facets()[n];
-  if (covers) return neighbour.polygon == occluder.polygon;
+  if (covers) {
+    const auto coplanar = soup_.coplanar(source_facet_);
+    return neighbour.polygon == occluder.polygon && std::binary_search(coplanar.begin(), coplanar.end(), n);
+  }
   const auto loop = soup_.corners(occluder);
   const auto side_of_source = [&](const Corner& c) {
     return facing_source_ * side_of(*source_plane_, c.at, view_.counts());

@@ -178,16 +178,21 @@ Truncation truncation_of(std::span<const double> weighted, int order) {
     }
   }
   if (size == 0) return {};
-  // Rings of even or of odd order vanish by symmetry: what the last but one lets expect of the last counts, too.
-  const auto rate = [&](double from, double to, std::size_t steps) {
+  const double tiny = 1e-17 * size;
+  const auto at = [&](std::size_t k) { return std::max(ring[k], tiny); };
+  const auto rate = [](double from, double to, std::size_t steps) {
     return std::pow(std::min(1.0, to / from), 1 / static_cast<double>(steps));
   };
-  const double tiny = 1e-17 * size, before = std::max(ring[n - 2], tiny);
-  double last = std::max(ring[n - 1], tiny);
-  if (n > 2) last = std::max(last, before * rate(size, before, n - 2));
-  // The fall from ring to ring, over two of them at the end and on the whole: the slower one counts.
+  // Rings of even or of odd order vanish by symmetry, others by chance: what the last but one and the one before let
+  // expect of the last counts, too.
+  double last = at(n - 1);
+  for (std::size_t back = 1; back <= 2 && back + 1 < n; ++back) {
+    const std::size_t k = n - 1 - back;
+    last = std::max(last, at(k) * std::pow(rate(size, at(k), k), static_cast<double>(back)));
+  }
+  // The fall on the whole and that at the end: the slower one counts.
   double fall = rate(size, last, n - 1);
-  if (n > 3) fall = std::max(fall, rate(std::max(ring[n - 3], tiny), last, 2));
+  if (n > 4) fall = std::max(fall, rate(std::max(at(n - 4), at(n - 3)), last, 2));
   return {2 * last * std::pow(fall, static_cast<double>(n + 1)), fall};
 }
 

@@ -6,8 +6,9 @@
 namespace exitance {
 namespace {
 
-/// Orders of a cell's first rule, and of that of its halves.
-constexpr int kFirstOrder = 4, kOrderOfHalves = 5;
+/// Orders of a cell's first rule, which only finds out whether anything is seen, of the next one at least, and of that
+/// of halves.
+constexpr int kScoutOrder = 2, kFirstOrder = 4, kOrderOfHalves = 5;
 /// So many cells are cut along events before any of them is measured.
 constexpr std::size_t kCellsCutFirst = 400;
 /// What a cell with uncut events may hide from its sample points, as a share of what could be seen at most.
@@ -25,7 +26,10 @@ ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& re
     : soup_(&soup), receiver_(receiver), source_(source), items_(items), most_(most) {
   events_ = visual_events(soup, receiver, source, items, complete_);
   const std::vector<Vec3> loop = corners_of(soup, receiver);
-  for (const AreaCell& shape : cells_of(loop)) {
+  find_contacts();
+  std::vector<AreaCell> shapes;
+  for (const AreaCell& shape : cells_of(loop)) add_about_contacts(shape, shapes);
+  for (const AreaCell& shape : shapes) {
     Cell cell;
     cell.shape = shape;
     for (std::uint32_t e = 0; e < events_.size(); ++e) {
@@ -33,6 +37,64 @@ ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& re
     }
     area_ += shape.area();
     cells_.push_back(std::move(cell));
+  }
+}
+
+void ObstructedExchange::find_contacts() {
+  const Plane& plane = soup_->facets()[receiver_.facet].plane;
+  const double size = norm(plane.normal);
+  const auto add = [&](const Vec3& v) {
+    const Vec3 w = v - plane.origin;
+    if (std::fabs(dot(plane.normal, w)) <= 1e-12 * size * norm(w)) contacts_.push_back(v);
+  };
+  for (const Vec3& v : corners_of(*soup_, source_)) add(v);
+  const auto facets = static_cast<std::uint32_t>(soup_->facets().size());
+  for (const std::uint32_t item : items_) {
+    if (item < facets) {
+      for (const Corner& c : soup_->corners(soup_->facets()[item])) add(c.at);
+    } else {
+      for (const std::uint32_t v : soup_->shells()[item - facets].vertices) add(soup_->vertices()[v]);
+    }
+  }
+}
+
+/// Appends the cell; if it touches contacts, as triangles that have one of them at their last corner or none at all.
+void ObstructedExchange::add_about_contacts(const AreaCell& shape, std::vector<AreaCell>& shapes) const {
+  const auto loop = shape.loop();
+  const std::size_t n = loop.size();
+  const double near = 1e-12 * (norm(loop[1] - loop[0]) + norm(loop[2] - loop[1]));
+  const auto touches = [&](const Vec3& v) {
+    return std::ranges::any_of(contacts_, [&](const Vec3& c) { return norm(v - c) <= near; });
+  };
+  const auto first = static_cast<std::size_t>(std::ranges::find_if(loop, touches) - loop.begin());
+  if (first == n) {
+    shapes.push_back(shape);
+    return;
+  }
+  // Triangles with the contact as apex; one that has another contact, too, is halved between them.
+  for (std::size_t k = 1; k + 1 < n; ++k) {
+    const Vec3 &apex = loop[first], &a = loop[(first + k) % n], &b = loop[(first + k + 1) % n];
+    const bool at_a = touches(a), at_b = touches(b);
+    if (!at_a && !at_b) {
+      shapes.push_back({{a, b, apex, a}, 3});
+      continue;
+    }
+    const Vec3 other = at_a ? a : b, free = at_a ? b : a, middle = apex + 0.5 * (other - apex);
+    const auto triangle = [&](const Vec3& p, const Vec3& q, const Vec3& r) { return AreaCell{{p, q, r, p}, 3}; };
+    if (at_a && at_b) {  // all three: four triangles, one at each corner and the middle one
+      const Vec3 m = a + 0.5 * (b - a), at_other = apex + 0.5 * (free - apex);
+      const Vec3 &near_a = middle, &near_b = at_other;
+      shapes.push_back(triangle(near_a, near_b, apex));
+      shapes.push_back(triangle(m, near_a, a));
+      shapes.push_back(triangle(near_b, m, b));
+      shapes.push_back(triangle(near_a, m, near_b));
+    } else if (at_a) {
+      shapes.push_back(triangle(middle, b, apex));
+      shapes.push_back(triangle(b, middle, a));
+    } else {
+      shapes.push_back(triangle(a, middle, apex));
+      shapes.push_back(triangle(middle, a, b));
+    }
   }
 }
 
@@ -59,6 +121,11 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
   const Truncation truncation = truncation_of(weighted_, cell.order);
   cell.error = truncation.error;
   cell.fall = truncation.fall;
+  // Four points tell little of what is seen, but where each of them sees nothing nothing is seen.
+  if (cell.order == kScoutOrder && cell.integral > 0) {
+    cell.error = cell.integral;
+    cell.fall = std::clamp(cell.fall, 0.05, 0.3);
+  }
   if (!cell.uncut.empty() || !complete_) cell.error += kUnnoticed * most_ * area;
 }
 
@@ -86,8 +153,10 @@ std::vector<ObstructedExchange::Cell> ObstructedExchange::parts_of(const Cell& c
     const auto [one, other] = bisect(cell.shape);
     shapes = {one, other};
   }
+  std::vector<AreaCell> arranged;
+  for (const AreaCell& shape : shapes) add_about_contacts(shape, arranged);
   std::vector<Cell> parts;
-  for (const AreaCell& shape : shapes) {
+  for (const AreaCell& shape : arranged) {
     Cell part;
     part.shape = shape;
     for (const std::uint32_t e : cell.uncut) {
@@ -123,7 +192,7 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
     started_ = true;
     cut_all();
     for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-      measure(view, cells_[c], kFirstOrder, tolerance);
+      measure(view, cells_[c], kScoutOrder, tolerance);
       running_error_ += cells_[c].error + cells_[c].point_error;
       push(c);
     }
@@ -137,8 +206,9 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
     // The order that the fall of the coefficients lets hope is enough; where that is too high, halves.
     const Cell& old = cells_[worst];
     const double wanted = 0.5 * tolerance * std::max(old.shape.area() / area_, 1 / static_cast<double>(cells_.size()));
-    int order = old.order + 1;
-    for (double left = old.error * old.fall * old.fall; left > wanted && order <= kHighestOrder; ++order) {
+    int order = std::max(kFirstOrder, old.order + 1);
+    for (double left = old.error * std::pow(old.fall, 2 * (order - old.order)); left > wanted && order <= kHighestOrder;
+         ++order) {
       left *= old.fall * old.fall;
     }
     std::vector<Cell> parts;

@@ -10,11 +10,11 @@
 
 namespace exitance {
 
-/// ∫ F(x → visible part of the source) dA over the receiver, refined on demand. The integrand is analytic but for visual
-/// events, so that cells are cut along those first; each is then integrated by a product Gauss rule, whose order rises,
-/// and which is halved where that does not help: beside events of three edges, shared edges and contacts. Where events
-/// are still uncut, a share of what could be seen at most is part of the error, because no rule notices what happens
-/// between its points. Deterministic.
+/// ∫ F(x → visible part of the source) dA over the receiver, refined on demand. The integrand is analytic but for
+/// visual events, so that cells are cut along those first; each is then integrated by a product Gauss rule, whose order
+/// rises, and which is halved where that does not help: beside events of three edges, shared edges and contacts. Where
+/// events are still uncut, a share of what could be seen at most is part of the error, because no rule notices what
+/// happens between its points. Deterministic.
 class ObstructedExchange {
  public:
   /// Receiver and source: pieces of two facets. items: what may stand between, of the soup's index, ascending.
@@ -42,6 +42,8 @@ class ObstructedExchange {
 
   void measure(Viewpoint& view, Cell& cell, int order, double tolerance);
   std::vector<Cell> parts_of(const Cell& cell) const;
+  void find_contacts();
+  void add_about_contacts(const AreaCell& shape, std::vector<AreaCell>& shapes) const;
   void cut_all();
 
   const PolygonSoup* soup_;
@@ -50,6 +52,7 @@ class ObstructedExchange {
   double most_ = 1, area_ = 0;
   bool complete_ = true;
   std::vector<VisualEvent> events_;
+  std::vector<Vec3> contacts_;  ///< corners of the source and of occluders in the receiver's plane
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> heap_;  ///< indices of cells, worst on top
   bool started_ = false;

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "geometry/contour_form_factor.h"
-#include "geometry/shaft.h"
 #include "src/form_factor/obstructed_exchange.h"
 
 namespace exitance {
@@ -50,24 +49,22 @@ void ExchangeScene::end_patch() {
   area_.push_back(area);
 }
 
-PairIntegrator::PairIntegrator(const ExchangeScene& scene) : scene_(scene), view_(scene.soup()) {}
+PairIntegrator::PairIntegrator(const ExchangeScene& scene) : scene_(scene), shaft_(scene.soup()), view_(scene.soup()) {}
 
 /// `tolerance`: in form factors; `needed`: of the exchange [m²].
 PairIntegrator::Exchanged PairIntegrator::exchange(const ExchangeScene::Piece& a, const ExchangeScene::Piece& b,
                                                    double tolerance, double needed, const PairOptions& options,
                                                    std::uint64_t& points) {
-  const Shaft shaft(scene_.soup(), {a.source.facet, a.source.loop}, {b.source.facet, b.source.loop});
-  if (!shaft.face_each_other()) return {};
-  shaft.find_occluders(items_);
-  if (items_.empty()) {
+  shaft_.reset({a.source.facet, a.source.loop}, {b.source.facet, b.source.loop});
+  if (!shaft_.face_each_other()) return {};
+  const Shaft::Overlap overlap = shaft_.find_occluders(items_);
+  if (overlap == Shaft::Overlap::outside) {
     ExchangeTolerance asked;
     asked.absolute = std::min(asked.absolute, tolerance);
     const Exchange open = unobstructed_exchange(a.radiator, b.radiator, asked);
     return {open.integral, open.error, PairClass::open};
   }
-  for (const std::uint32_t item : items_) {
-    if (shaft.overlap(item) == Shaft::Overlap::blocking) return {0, 0, PairClass::blocked};
-  }
+  if (overlap == Shaft::Overlap::blocking) return {0, 0, PairClass::blocked};
   const RadiatorFacet &of_a = a.radiator.facets()[0], &of_b = b.radiator.facets()[0];
   ObstructedExchange there(scene_.soup(), a.source, b.source, items_, most(of_a, of_b));
   ObstructedExchange back(scene_.soup(), b.source, a.source, items_, most(of_b, of_a));
@@ -104,7 +101,8 @@ PairFormFactor PairIntegrator::form_factor(std::size_t i, std::size_t j, const P
     open = blocked = partial = false;
     for (std::size_t k = 0; k < a.size(); ++k) {
       for (std::size_t l = i == j ? k + 1 : 0; l < b.size(); ++l) {
-        const Exchanged e = exchange(a[k], b[l], tolerance * share, tolerance * smaller * share, options, result.points);
+        const Exchanged e =
+            exchange(a[k], b[l], tolerance * share, tolerance * smaller * share, options, result.points);
         const double times = i == j ? 2 : 1;  // of a bent patch, what goes there and what comes back
         integral += times * e.integral;
         error += times * e.error;

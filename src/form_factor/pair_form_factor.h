@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/radiator.h"
+#include "geometry/shaft.h"
 #include "geometry/viewpoint.h"
 #include "src/scene/patch_mesh.h"
 
@@ -44,8 +45,8 @@ class ExchangeScene {
 enum class PairClass : std::uint8_t { facing_away, open, blocked, partial };
 
 struct PairOptions {
-  double tolerance = 1e-12;  ///< of the form factors' errors, in both directions
-  double relative = 0;       ///< an error within this share of its form factor is good enough, too
+  double tolerance = 1e-12;        ///< of the form factors' errors, in both directions
+  double relative = 0;             ///< an error within this share of its form factor is good enough, too
   std::uint64_t points = 100'000;  ///< that an integral may take; one that needs more has not reached its tolerance
   bool both_ways = false;  ///< integrate over both patches, independently; errors then cover what the other one says
 };
@@ -81,6 +82,7 @@ class PairIntegrator {
                      const PairOptions& options, std::uint64_t& points);
 
   const ExchangeScene& scene_;
+  Shaft shaft_;
   Viewpoint view_;
   std::vector<std::uint32_t> items_;
 };

@@ -110,6 +110,26 @@ class RowMaker {
 
 using RowMakers = tbb::enumerable_thread_specific<RowMaker>;
 
+/// Makes the row of element(k) for k = 0 … count − 1 and gives each to sink(row), in order.
+template <class ElementOf, class Sink>
+void for_each_row(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t count, const ElementOf& element,
+                  const Progress& progress, const Sink& sink) {
+  RowMakers makers([&] { return RowMaker(mesh, soup); });
+  // Blocks are small enough to report progress between them and large enough to keep all threads busy.
+  constexpr std::size_t kBlock = 256;
+  std::vector<RowMaker::Row> rows;
+  for (std::size_t begin = 0; begin < count; begin += kBlock) {
+    const std::size_t end = std::min(count, begin + kBlock);
+    rows.assign(end - begin, {});
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 1), [&](const auto& range) {
+      RowMaker& maker = makers.local();
+      for (std::size_t k = range.begin(); k < range.end(); ++k) rows[k - begin] = maker.row(element(k));
+    });
+    for (const auto& row : rows) sink(row);
+    if (progress) progress(static_cast<double>(end) / static_cast<double>(count), "form factors");
+  }
+}
+
 }  // namespace
 
 PointRowStatistics& PointRowStatistics::operator+=(const PointRowStatistics& other) {
@@ -125,27 +145,25 @@ PointRows point_rows(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t
                      const Progress& progress) {
   PointRows result;
   result.F.columns = static_cast<std::uint32_t>(mesh.patches.size());
-  RowMakers makers([&] { return RowMaker(mesh, soup); });
-  // Blocks are small enough to report progress between them and large enough to keep all threads busy.
-  constexpr std::size_t kBlock = 256;
-  std::vector<RowMaker::Row> rows;
-  for (std::size_t begin = first; begin < last; begin += kBlock) {
-    const std::size_t end = std::min(last, begin + kBlock);
-    rows.assign(end - begin, {});
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 1), [&](const auto& range) {
-      RowMaker& maker = makers.local();
-      for (std::size_t e = range.begin(); e < range.end(); ++e) rows[e - begin] = maker.row(e);
-    });
-    for (const auto& row : rows) {
-      result.F.column.insert(result.F.column.end(), row.column.begin(), row.column.end());
-      result.F.F.insert(result.F.F.end(), row.F.begin(), row.F.end());
-      result.F.F_error.insert(result.F.F_error.end(), row.F_error.begin(), row.F_error.end());
-      result.F.row_first.push_back(result.F.F.size());
-      result.statistics += row.statistics;
-    }
-    if (progress) progress(static_cast<double>(end - first) / static_cast<double>(last - first), "form factors");
-  }
+  for_each_row(
+      mesh, soup, last - first, [&](std::size_t k) { return first + k; }, progress,
+      [&](const RowMaker::Row& row) {
+        result.F.column.insert(result.F.column.end(), row.column.begin(), row.column.end());
+        result.F.F.insert(result.F.F.end(), row.F.begin(), row.F.end());
+        result.F.F_error.insert(result.F.F_error.end(), row.F_error.begin(), row.F_error.end());
+        result.F.row_first.push_back(result.F.F.size());
+        result.statistics += row.statistics;
+      });
   return result;
+}
+
+PointRowStatistics point_row_statistics(const PatchMesh& mesh, const PolygonSoup& soup,
+                                        std::span<const std::size_t> elements, const Progress& progress) {
+  PointRowStatistics sum;
+  for_each_row(
+      mesh, soup, elements.size(), [&](std::size_t k) { return elements[k]; }, progress,
+      [&](const RowMaker::Row& row) { sum += row.statistics; });
+  return sum;
 }
 
 void point_column(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t patch, std::span<double> F,

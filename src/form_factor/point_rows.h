@@ -40,6 +40,11 @@ inline constexpr double kPointTolerance = 1e-11;
 PointRows point_rows(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t first, std::size_t last,
                      const Progress& progress = {});
 
+/// The statistics of the rows of some elements, in any order; the rows are not kept. In parallel; any number of threads
+/// gives the same. An element that is named twice counts twice.
+PointRowStatistics point_row_statistics(const PatchMesh& mesh, const PolygonSoup& soup,
+                                        std::span<const std::size_t> elements, const Progress& progress = {});
+
 /// Form factor F[e] from every element to one patch, with error bounds: a column, for shooting without a matrix.
 void point_column(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t patch, std::span<double> F,
                   std::span<double> F_error);

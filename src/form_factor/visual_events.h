@@ -24,10 +24,10 @@ struct VisualEvent {
 /// The corners of a piece of a facet.
 std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& piece);
 
-/// Events on the receiver of a source and of what stands between them, items of the soup's index: planes of the surfaces
-/// themselves, contacts in the receiver's plane, a vertex of the one against an edge of the other, and occluders against
-/// each other; each line once, but for those that differ in where they matter. Events of three edges are none of these,
-/// and curved. `complete`: false where there were too many occluders to look at all pairs of them.
+/// Events on the receiver of a source and of what stands between them, items of the soup's index: planes of the
+/// surfaces themselves, contacts in the receiver's plane, a vertex of the one against an edge of the other, and
+/// occluders against each other; each line once, but for those that differ in where they matter. Events of three edges
+/// are none of these, and curved. `complete`: false where there were too many occluders to look at all pairs of them.
 std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& receiver, const Source& source,
                                        std::span<const std::uint32_t> items, bool& complete);
 

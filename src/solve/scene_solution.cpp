@@ -1,7 +1,6 @@
 #include "src/solve/scene_solution.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <chrono>
@@ -181,12 +180,9 @@ class SceneSolver {
   void measure_sample() {
     constexpr std::size_t kSample = 256;
     const std::size_t n = result_.mesh.elements.size(), count = std::min(n, kSample);
-    std::vector<PointRowStatistics> found(count);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
-      const std::size_t e = n * (2 * k + 1) / (2 * count);
-      found[k] = point_rows(result_.mesh, result_.soup, e, e + 1).statistics;
-    });
-    for (const PointRowStatistics& s : found) result_.statistics += s;
+    std::vector<std::size_t> sample;
+    for (std::size_t k = 0; k < count; ++k) sample.push_back(n * (2 * k + 1) / (2 * count));
+    result_.statistics += point_row_statistics(result_.mesh, result_.soup, sample);
     result_.measured_points = count;
   }
 

@@ -63,6 +63,92 @@ TEST(Check, TakesView3DsScenesAndSoDoesSolve) {
   const Outcome solved = run("solve --json " + scene);
   EXPECT_EQ(solved.code, 0);
   EXPECT_EQ(nlohmann::json::parse(solved.out).at("patches"), 7);
+nlohmann::json closure_of(const std::string& arguments) {
+  const Outcome outcome = run("check --json " + arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return nlohmann::json::parse(outcome.out).at("closure");
+}
+
+TEST(CheckClosure, LooksFromRandomPointsOfAClosedScene) {
+  const ScratchFolder scratch;
+  const std::string scene = (scratch / "room.obj").string();
+  ASSERT_EQ(run("generate furnished-room --polygons 300 --seed 5 -o " + scene).code, 0);
+  const auto closure = closure_of(scene + " --closure 200 --threads 2");
+  EXPECT_EQ(closure.at("points"), 200);
+  EXPECT_EQ(closure.at("seed"), 1);
+  EXPECT_LT(closure.at("max_defect"), 1e-12);
+  EXPECT_GT(closure.at("covered_points"), 0);
+  EXPECT_LT(closure.at("covered_points"), 100);
+  EXPECT_EQ(closure_of(scene + " --closure 200 --threads 1"), closure);
+  EXPECT_EQ(closure_of(scene + " --closure 200 --seed 1"), closure);
+  EXPECT_NE(closure_of(scene + " --closure 200 --seed 2").at("max_defect"), closure.at("max_defect"));
+  const Outcome words = run("check " + scene + " --closure 3");
+  EXPECT_EQ(words.code, 0);
+  EXPECT_THAT(words.out, testing::HasSubstr("at 3 sample points"));
+}
+
+TEST(CheckClosure, MeansNothingInAnOpenScene) {
+  const std::string scene = data("cornell_box.toml");
+  const auto closure = closure_of(scene + " --closure 5");
+  EXPECT_EQ(closure.at("points"), 0);
+  EXPECT_TRUE(closure.at("max_defect").is_null());
+  const Outcome words = run("check " + scene + " --closure 5");
+  EXPECT_EQ(words.code, 0);
+  EXPECT_THAT(words.out, testing::HasSubstr("closure: without meaning"));
+  EXPECT_THAT(run("check " + scene).out, testing::Not(testing::HasSubstr("closure:")));
+}
+
+// A shelf most of which lies in the room, so that the scene counts as closed; but its end stands out of the wall, and
+// from there the open is seen.
+TEST(CheckClosure, EndsWithOneWhereFrontAndBackMissOne) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "shelf.toml") << R"([[material]]
+name = "white"
+rho = 0.5
+E = 1
+
+[[object]]
+name = "room"
+box = {min = [0, 0, 0], max = [4, 4, 4]}
+material = "white"
+flip = true
+
+[[object]]
+name = "shelf"
+material = "white"
+polygons = [
+  {polygon = [[1, 1, 2], [4, 1, 2], [4, 3, 2], [1, 3, 2]]},
+  {polygon = [[4, 1, 2], [5, 1, 2], [5, 3, 2], [4, 3, 2]]},
+  {polygon = [[5, 1, 2], [5, 1, 3], [5, 3, 3], [5, 3, 2]]},
+]
+)";
+  const std::string scene = (scratch / "shelf.toml").string();
+  const Outcome words = run("check " + scene + " --closure 50");
+  EXPECT_EQ(words.code, 1);
+  EXPECT_TRUE(words.one_line_on_stderr()) << words.err;
+  EXPECT_THAT(words.out, testing::HasSubstr("closed: no light escapes"));
+  const Outcome json = run("check --json " + scene + " --closure 50");
+  EXPECT_EQ(json.code, 1);
+  EXPECT_GT(nlohmann::json::parse(json.out).at("closure").at("max_defect"), 0.1);
+}
+
+TEST(CheckClosure, RefusesWhatIsNoNumberOfPoints) {
+  const std::string scene = data("box_on_floor.toml");
+  for (const char* wrong : {" --closure 0", " --closure -3", " --closure 1.5", " --closure many", " --closure",
+                            " --closure 5 --seed x", " --closure 5 --threads 0", " --seed 2", " --threads 2"}) {
+    const Outcome outcome = run("check " + scene + wrong);
+    EXPECT_EQ(outcome.code, 2) << wrong;
+    EXPECT_TRUE(outcome.one_line_on_stderr()) << wrong << ": " << outcome.err;
+    EXPECT_EQ(outcome.out, "") << wrong;
+  }
+}
+
+TEST(CheckClosure, IsNotAskedOfASceneThatCannotBeSolved) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "bad.obj") << "v 0 0 0\nv 1 0 0\nv 0 nan 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n";
+  const Outcome outcome = run("check --json --closure 5 " + (scratch / "bad.obj").string());
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_FALSE(nlohmann::json::parse(outcome.out).contains("closure"));
 }
 
 TEST(Generate, TheSameSeedGivesTheSameClosedRoom) {

@@ -19,7 +19,7 @@ double integral(const AreaCell& cell, int order, double (*f)(const Vec3&)) {
 }
 
 TEST(AreaCell, GaussRulesIntegratePolynomials) {
-  for (const int order : {3, 4, 6, 8}) {
+  for (const int order : {3, 4, 5, 6, 8, 12}) {
     EXPECT_NEAR(integral(kTriangle, order, [](const Vec3&) { return 1.0; }), 1, 1e-15) << order;
     EXPECT_NEAR(integral(kTrapezium, order, [](const Vec3&) { return 1.0; }), 3, 1e-14) << order;
     // ∫ x² y over 0 ≤ y ≤ 1, 0 ≤ x ≤ 2 (1 − y): 8/3 ∫ y (1 − y)³ dy = 8/60.
@@ -27,7 +27,7 @@ TEST(AreaCell, GaussRulesIntegratePolynomials) {
     // ∫ x over 0 ≤ z ≤ 1, 0 ≤ x ≤ 4 − 2 z: ½ ∫ (4 − 2 z)² dz = 14/3.
     EXPECT_NEAR(integral(kTrapezium, order, [](const Vec3& p) { return p.x; }), 14.0 / 3, 1e-14) << order;
   }
-  EXPECT_THROW(integral(kTriangle, 5, [](const Vec3&) { return 1.0; }), std::invalid_argument);
+  EXPECT_THROW(integral(kTriangle, 13, [](const Vec3&) { return 1.0; }), std::invalid_argument);
 }
 
 TEST(AreaCell, PartsMakeTheWhole) {
@@ -41,7 +41,7 @@ TEST(AreaCell, PartsMakeTheWhole) {
   double area = 0;
   for (const AreaCell& part : cut(kTrapezium, oblique)) {
     area += part.area();
-    EXPECT_FALSE(crosses(part, oblique));
+    EXPECT_FALSE(crosses(part.loop(), oblique));
     EXPECT_TRUE(cut(part, oblique).empty());
   }
   EXPECT_NEAR(area, 3, 1e-14);
@@ -53,6 +53,55 @@ TEST(AreaCell, APlaneThroughACornerOrAnEdgeLeavesTheCellWhole) {
   EXPECT_TRUE(cut(kTriangle, {{1, 0, 0}, {3, 0, 0}}).empty());
   EXPECT_TRUE(cut(kTriangle, {{0, 0, 1}, {0, 0, 1}}).empty());
   EXPECT_FALSE(cut(kTriangle, {{1, 0, 0}, {1.9, 0, 0}}).empty());
+}
+
+/// The weighted values of an integrand, and what the rule and the truth say.
+struct Ruled {
+  double error, true_error;
+};
+Ruled ruled(int order, double (*f)(const Vec3&), double truth) {
+  const AreaCell square{{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 1, 0}, Vec3{0, 1, 0}}, 4};
+  std::vector<WeightedPoint> points;
+  gauss_points(square, order, points);
+  std::vector<double> weighted;
+  double sum = 0;
+  for (const WeightedPoint& p : points) {
+    weighted.push_back(p.weight * f(p.point));
+    sum += weighted.back();
+  }
+  return {truncation_of(weighted, order).error, std::fabs(sum - truth)};
+}
+
+TEST(Truncation, BoundsTheErrorOfAnalyticIntegrands) {
+  const double logs = std::log(2.2 / 1.2) * std::log(2.5 / 1.5);
+  for (int order = 3; order <= kHighestOrder; ++order) {
+    const Ruled pole = ruled(
+        order, [](const Vec3& p) { return 1 / ((1.2 + p.x) * (1.5 + p.y)); }, logs);
+    EXPECT_LE(pole.true_error, pole.error + 1e-15) << order;
+    // Even about the middle: every other coefficient is zero.
+    const Ruled even = ruled(
+        order, [](const Vec3& p) { return std::cosh(2 * p.x - 1); }, std::sinh(1.0));
+    EXPECT_LE(even.true_error, even.error + 1e-15) << order;
+    if (order >= 8) {
+      EXPECT_LE(even.error, 1e-7) << order;
+    }
+  }
+}
+
+/// One rule cannot know where a kink lies; it can tell that the integrand is not smooth.
+TEST(Truncation, OfAKinkTheFigureIsOfTheErrorsSize) {
+  for (int order = 3; order <= kHighestOrder; ++order) {
+    const Ruled kink = ruled(
+        order, [](const Vec3& p) { return std::fabs(p.x - 0.3); }, 0.5 * (0.09 + 0.49));
+    EXPECT_LE(kink.true_error, 10 * kink.error) << order;
+    const Ruled late = ruled(
+        order, [](const Vec3& p) { return std::max(0.0, p.x + p.y - 1.4); }, 0.6 * 0.6 * 0.6 / 6);
+    EXPECT_LE(late.true_error, 10 * late.error) << order;
+  }
+}
+
+TEST(Truncation, OfNothingIsNothing) {
+  EXPECT_EQ(truncation_of(std::vector<double>(16, 0.0), 4).error, 0);
 }
 
 }  // namespace

@@ -32,8 +32,15 @@ std::vector<Polygon> box(const Vec3& a, const Vec3& b, bool inside = false) {
   return faces;
 }
 
+PairOptions options(double tolerance) {
+  PairOptions o;
+  o.tolerance = tolerance;
+  o.both_ways = true;
+  return o;
+}
 AreaFormFactors all(const std::vector<Polygon>& patches, double tolerance = 1e-12) {
-  return area_form_factors(AreaScene(patches, {}), tolerance);
+  const PolygonSoup soup(patches);
+  return area_form_factors(ExchangeScene(soup), options(tolerance));
 }
 PairFormFactor pair(const Polygon& a, const Polygon& b, const std::vector<Polygon>& occluders, double tolerance,
                     Role role = Role::sheet) {
@@ -43,9 +50,9 @@ PairFormFactor pair(const Polygon& a, const Polygon& b, const std::vector<Polygo
     polygons.push_back(p);
     roles.push_back(role);
   }
-  const AreaScene scene(polygons, roles);
-  AreaViews views = scene.views();
-  return pair_form_factor(scene, views, 0, 1, tolerance, points_per_integral(1));
+  const PolygonSoup soup(polygons, roles);
+  const ExchangeScene scene(soup);
+  return PairIntegrator(scene).form_factor(0, 1, options(tolerance));
 }
 
 /// Turned by 50 degrees or so about no axis in particular; not even quadrilaterals stay exactly planar.
@@ -209,23 +216,47 @@ TEST(AreaFormFactors, ErrorsHoldWhereRandomTrianglesObstruct) {
 TEST(AreaFormFactors, OpenMeansOpen) {
   const auto room = box({0, 0, 0}, {1, 1, 1}, true);
   const PolygonSoup soup(room);
-  for (std::uint32_t i = 0; i < 6; ++i) {
-    for (std::uint32_t j = 0; j < 6; ++j) {
-      if (i == j) continue;
-      EXPECT_TRUE(occluders_between(soup, i, j).empty()) << i << " " << j;
+  const ExchangeScene scene(soup);
+  PairIntegrator integrator(scene);
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t j = 0; j < 6; ++j) {
+      const PairFormFactor f = integrator.form_factor(i, j, options(1e-9));
+      EXPECT_EQ(f.kind, i == j ? PairClass::facing_away : PairClass::open) << i << " " << j;
+      EXPECT_EQ(f.points, 0u);
     }
   }
-  const PolygonSoup blocked(std::vector{kFloor, kCeiling, kPlate, up(rectangle(0.5, 1, 0, 2, 1))});
-  EXPECT_EQ(occluders_between(blocked, 0, 1), std::vector<std::uint32_t>{2}) << "the other one only touches the hull";
+  const Polygon touching = up(rectangle(0.5, 1, 0, 2, 1)), covering = up(rectangle(0.5, -1, -1, 2, 2));
+  EXPECT_EQ(pair(kFloor, kCeiling, {touching}, 1e-9).kind, PairClass::open) << "it only touches the hull";
+  EXPECT_EQ(pair(kFloor, kCeiling, {kPlate}, 1e-9).kind, PairClass::partial);
+  const PairFormFactor none = pair(kFloor, kCeiling, {covering}, 1e-9);
+  EXPECT_EQ(none.kind, PairClass::blocked);
+  EXPECT_EQ(none.F, 0);
+  EXPECT_EQ(none.points, 0u);
 }
 
 TEST(AreaFormFactors, ABudgetThatEndsIsSaidSo) {
-  const AreaScene scene(std::vector{kFloor, kWall, kPlate}, std::vector{Role::patch, Role::patch, Role::sheet});
-  AreaViews views = scene.views();
-  const PairFormFactor few = pair_form_factor(scene, views, 0, 1, 1e-15, 500);
-  EXPECT_FALSE(few.reached);
-  EXPECT_GT(few.F_error, 1e-15);
-  EXPECT_NEAR(few.F, pair(kFloor, kWall, {kPlate}, 1e-12).F, few.F_error);
+  const PolygonSoup soup(std::vector{kFloor, kWall, kPlate}, std::vector{Role::patch, Role::patch, Role::sheet});
+  const ExchangeScene scene(soup);
+  PairOptions few = options(1e-15);
+  few.points = 500;
+  const PairFormFactor f = PairIntegrator(scene).form_factor(0, 1, few);
+  EXPECT_FALSE(f.reached);
+  EXPECT_GT(f.F_error, 1e-15);
+  EXPECT_NEAR(f.F, pair(kFloor, kWall, {kPlate}, 1e-12).F, f.F_error);
+}
+
+TEST(AreaFormFactors, RelativeToleranceIsOfTheValue) {
+  const Polygon far = down(rectangle(100, 0, 0, 1, 1)), plate = up(rectangle(50, 0.25, 0.25, 0.75, 0.75));
+  const PolygonSoup soup(std::vector{kFloor, far, plate}, std::vector{Role::patch, Role::patch, Role::sheet});
+  const ExchangeScene scene(soup);
+  PairIntegrator integrator(scene);
+  PairOptions loose = options(1e-15), tight = options(1e-15);
+  loose.relative = 1e-4;
+  const PairFormFactor a = integrator.form_factor(0, 1, loose), b = integrator.form_factor(0, 1, tight);
+  EXPECT_TRUE(a.reached);
+  EXPECT_LE(a.F_error, 1e-4 * a.F);
+  EXPECT_LE(a.points, b.points);
+  EXPECT_NEAR(a.F, b.F, a.F_error + b.F_error);
 }
 
 TEST(AreaFormFactors, SameBitsForAnyNumberOfThreads) {

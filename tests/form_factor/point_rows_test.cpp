@@ -232,6 +232,20 @@ TEST(PointRows, RowsAndColumnsAreThoseOfTheWholeMatrix) {
   EXPECT_EQ(rows.some(7, 7).F.rows(), 0u);
 }
 
+TEST(PointRows, StatisticsOfSomeElementsAreThoseOfTheirRows) {
+  const Rows rows(make_furnished_room(200, 5));
+  const std::vector<std::size_t> elements = {31, 7, 198, 7};
+  PointRowStatistics expected;
+  for (const std::size_t e : elements) expected += rows.some(e, e + 1).statistics;
+  const PointRowStatistics found = point_row_statistics(rows.mesh, rows.soup, elements);
+  EXPECT_EQ(found.closure_max_defect, expected.closure_max_defect);
+  EXPECT_EQ(found.covered_points, expected.covered_points);
+  EXPECT_EQ(found.pairs.open, expected.pairs.open);
+  EXPECT_EQ(found.pairs.partial, expected.pairs.partial);
+  EXPECT_EQ(found.pairs.blocked, expected.pairs.blocked);
+  EXPECT_EQ(point_row_statistics(rows.mesh, rows.soup, {}).covered_points, 0u);
+}
+
 TEST(PointRows, TheOrderOfPolygonsChangesNoMoreThanTheErrorBoundsSay) {
   const Scene scene = make_furnished_room(200, 6);
   Scene reversed = scene;

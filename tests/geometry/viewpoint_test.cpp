@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
+
+#include "tests/geometry/visibility_oracle.h"
 
 namespace exitance {
 namespace {
@@ -76,6 +79,91 @@ TEST(Viewpoint, CoversLieOnTheFront) {
   const PointFormFactor behind = view.form_factor({0, {}});
   EXPECT_EQ(behind.side, Side::back);
   EXPECT_GT(behind.F, 0.5);
+}
+
+// A floor and a rug of two triangles, one of which lies in the floor's plane while the other dips under it: it is the
+// first that hides, and the edge between them bounds what it hides.
+TEST(Viewpoint, OnlyTheFlushHalfOfABentRugCovers) {
+  const Polygon floor{{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, {}};
+  const Polygon rug{{{1, 1, 0}, {3, 1, 0}, {3, 3, 0}, {1, 3, -0x1p-30}}, {}};
+  const Polygon flush{{{1, 1, 0}, {3, 1, 0}, {3, 3, 0}}, {}};
+  const auto seen = [&](const Polygon& on_top) {
+    const PolygonSoup soup(std::vector<Polygon>{floor, on_top});
+    Viewpoint view(soup);
+    view.look_from({{1.75, 2, 3}, {0.1, 0.2, -1}});
+    return view.form_factor({0, {}});
+  };
+  const PointFormFactor with = seen(rug), expected = seen(flush);
+  ASSERT_GT(expected.F, 0.1);
+  EXPECT_NEAR(with.F, expected.F, with.error + expected.error);
+}
+
+// A face of a solid covers an earlier face in its plane that looks the same way, and only that part of it.
+TEST(Viewpoint, ASolidCoversWhatItsFaceIsFlushWith) {
+  const Polygon floor{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {}};
+  const Polygon left{{{-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0}}, {}};
+  const std::vector<Polygon> box = {
+      {{{0, -2, -1}, {0, 2, -1}, {2, 2, -1}, {2, -2, -1}}, {}}, {{{0, -2, 0}, {2, -2, 0}, {2, 2, 0}, {0, 2, 0}}, {}},
+      {{{0, -2, -1}, {2, -2, -1}, {2, -2, 0}, {0, -2, 0}}, {}}, {{{0, 2, -1}, {0, 2, 0}, {2, 2, 0}, {2, 2, -1}}, {}},
+      {{{0, -2, -1}, {0, -2, 0}, {0, 2, 0}, {0, 2, -1}}, {}},   {{{2, -2, -1}, {2, 2, -1}, {2, 2, 0}, {2, -2, 0}}, {}}};
+  const auto seen = [&](const Polygon& source, bool box_is_later, Role of_box) {
+    std::vector<Polygon> polygons = box;
+    std::vector<Role> roles(polygons.size(), of_box);
+    const std::size_t place = box_is_later ? 0 : polygons.size();
+    polygons.insert(polygons.begin() + static_cast<std::ptrdiff_t>(place), source);
+    roles.insert(roles.begin() + static_cast<std::ptrdiff_t>(place), Role::patch);
+    const PolygonSoup soup(polygons, roles);
+    Viewpoint view(soup);
+    view.look_from({{0.1, 0.2, 1.5}, {0.1, 0, -1}});
+    return view.form_factor({soup.first_facet(static_cast<std::uint32_t>(place)), {}}).F;
+  };
+  EXPECT_NEAR(seen(floor, true, Role::patch), seen(left, true, Role::unoccluding), 1e-13);
+  EXPECT_NEAR(seen(floor, false, Role::patch), seen(floor, false, Role::unoccluding), 1e-13);
+  // Of what only occludes, a sheet covers any patch in its plane, a face of a solid one that it faces.
+  EXPECT_NEAR(seen(floor, false, Role::sheet), seen(left, true, Role::unoccluding), 1e-13);
+  EXPECT_NEAR(seen(floor, true, Role::solid_face), seen(floor, true, Role::unoccluding), 1e-13);
+}
+
+// A point of one box's side (0) sees past another box (1 … 6), whose side 6 lies in the same plane; rounded an ulp
+// beyond that plane, where 6 is seen from its front, it sees the same of the floor.
+TEST(Viewpoint, APointRoundedOutOfItsPlaneSeesTheSolidsThatTouchIt) {
+  const std::vector<Polygon> polygons = {
+      {{{3, 2, 1}, {3, 2, 4}, {3, 3, 4}, {3, 3, 1}}, {}}, {{{2, 1, 0}, {2, 2, 0}, {3, 2, 0}, {3, 1, 0}}, {}},
+      {{{2, 1, 2}, {3, 1, 2}, {3, 2, 2}, {2, 2, 2}}, {}}, {{{2, 1, 0}, {3, 1, 0}, {3, 1, 2}, {2, 1, 2}}, {}},
+      {{{2, 2, 0}, {2, 2, 2}, {3, 2, 2}, {3, 2, 0}}, {}}, {{{2, 1, 0}, {2, 1, 2}, {2, 2, 2}, {2, 2, 0}}, {}},
+      {{{3, 1, 0}, {3, 2, 0}, {3, 2, 2}, {3, 1, 2}}, {}}, {{{3, 2, 1}, {4, 2, 1}, {4, 2, 4}, {3, 2, 4}}, {}},
+      {{{3, 3, 2}, {3, 4, 2}, {3, 4, 4}, {3, 3, 4}}, {}}, {{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, {}}};
+  const Vec3 x{3, 2.4996, 2.75578};
+  const PointFormFactor on_it = ask(polygons, x, {-1, 0, 0}, {});
+  ASSERT_EQ(on_it.visibility, Visibility::partial);
+  for (const double ulps : {-2, -1, 1, 2}) {
+    const PointFormFactor beside = ask(polygons, x + Vec3{ulps * 0x1p-51, 0, 0}, {-1, 0, 0}, {});
+    EXPECT_NEAR(beside.F, on_it.F, 1e-13) << ulps;
+  }
+}
+
+// A sliver at the horizon whose form factor is less than what double precision proves of its error.
+TEST(Viewpoint, AValueThatItsErrorHidesIsFoundByMoreDigits) {
+  const Polygon sliver{{{1.4383009909092819, 4.16591604043351, 1.4713784300498425},
+                        {1.4383007608553131, 4.1659158802377867, 0.029931785947447942},
+                        {1.438300610820116, 4.1435290484360277, 0.029931785947447942},
+                        {1.4383008408740849, 4.1435289282892338, 1.4713784300498425}},
+                       {}};
+  const Vec3 x{1.437218837044699, 4.1664570280684945, 0.029392532646353886},
+      normal{0.57749151863506454, 0.57691417572229375, -0.5776448560796098};
+  const PolygonSoup soup(std::vector<Polygon>{sliver});
+  Viewpoint view(soup);
+  view.look_from({x, normal});
+  double F = 0, error = 0;
+  for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
+    const PointFormFactor part = view.form_factor({f, {}}, 1e-11);
+    F += part.F;
+    error += part.error;
+  }
+  const auto truth = static_cast<double>(oracle_form_factor(x, normal, sliver, {}).F);
+  ASSERT_GT(truth, 1e-12);
+  EXPECT_NEAR(F, truth, 6e-13);
+  EXPECT_LE(std::fabs(F - truth), error);
 }
 
 // Of the two sides of a sheet a point sees one, the front of the side that is turned to it.

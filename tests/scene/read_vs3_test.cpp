@@ -169,7 +169,7 @@ TEST_F(Vs3, ExchangeOfARotatedBaseIsTheWholesLessTheSubsurfaces) {
 
   std::vector<Polygon> polygons;
   for (const Surface& s : scene.surfaces) polygons.push_back(s.polygon);
-  const AreaFormFactors found = area_form_factors(AreaScene(polygons, {}), 1e-5);
+  const AreaFormFactors found = area_form_factors(ExchangeScene(PolygonSoup(polygons)), {.tolerance = 1e-5});
   const auto F = [&](std::size_t i, std::size_t j) { return found.F[i * found.n + j]; };
   EXPECT_NEAR(found.area[2], 1 - 0.08 - 0.12, 1e-12);
   // Opposite and adjacent faces of a cube (parallel squares' closed form; the rest by symmetry).
