@@ -95,12 +95,13 @@ Recomputed recompute(const ExchangeScene& scene, Viewpoint& view, const SampledP
   std::vector<std::uint32_t> items;
   for (const ExchangeScene::Piece& p : a) {
     for (const ExchangeScene::Piece& q : b) {
-      const Shaft shaft(scene.soup(), {p.source.facet, p.source.loop}, {q.source.facet, q.source.loop});
+      Shaft shaft(scene.soup(), {p.source.facet, p.source.loop}, {q.source.facet, q.source.loop});
       if (!shaft.face_each_other()) continue;
       const Exchange open = unobstructed_exchange(p.radiator, q.radiator);
       add(result.unobstructed, open);
-      shaft.find_occluders(items);
-      if (items.empty()) {
+      const Shaft::Overlap overlap = shaft.find_occluders(items);
+      if (overlap == Shaft::Overlap::blocking) continue;
+      if (overlap == Shaft::Overlap::outside) {
         add(result.over_i, open);
         add(result.over_j, open);
         continue;
