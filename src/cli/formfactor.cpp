@@ -107,6 +107,9 @@ class FormFactor {
     verb.add_option("--memory-limit", memory_limit_,
                     "Memory for form factors [GiB]; all that is available unless given")
         ->check(CLI::PositiveNumber);
+    verb.add_option("--save-every", save_every_, "Seconds of work after which finished rows are saved beside FILE")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
     verb.add_option("--seed", seed_, "Of the pairs that are integrated again as a check")->capture_default_str();
     verb.add_flag(
         "--close-rows", close_rows_,
@@ -207,6 +210,7 @@ class FormFactor {
       ProgressDisplay display;
       rows = run_pairs(patches.exchange,
                        {.pairs = pairs_,
+                        .block_seconds = save_every_,
                         .progress = [&](double fraction, std::string_view label) { display.show(fraction, label); },
                         .stop = interrupted},
                        checkpoint_ ? &*checkpoint_ : nullptr);
@@ -286,7 +290,7 @@ class FormFactor {
   CLI::App& verb_;
   SceneOptions scene_;
   PairOptions pairs_{.tolerance = 1e-9};
-  double patch_size_ = 0;
+  double patch_size_ = 0, save_every_ = 2;
   std::optional<std::size_t> threads_;
   std::optional<double> memory_limit_;
   std::uint64_t seed_ = 1;

@@ -13,8 +13,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kBlockSeconds = 2;
-
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -22,16 +20,17 @@ double seconds_since(Clock::time_point start) {
 /// How many rows to ask for at a time, so that it takes a fraction of a block.
 class Stride {
  public:
-  explicit Stride(std::size_t threads) : least_(threads), rows_(threads) {}
+  Stride(std::size_t threads, double block_seconds) : least_(threads), rows_(threads), aim_(0.5 * block_seconds) {}
 
   std::size_t rows() const { return rows_; }
   void learn(double seconds) {
-    const double fitting = 0.5 * kBlockSeconds / std::max(seconds, 1e-6) * static_cast<double>(rows_);
+    const double fitting = aim_ / std::max(seconds, 1e-6) * static_cast<double>(rows_);
     rows_ = static_cast<std::size_t>(std::clamp(fitting, static_cast<double>(least_), 4 * static_cast<double>(rows_)));
   }
 
  private:
   std::size_t least_, rows_;
+  double aim_;
 };
 
 std::vector<PairRows> finished_rows(const Checkpoint& checkpoint) {
@@ -62,7 +61,7 @@ PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Che
     pairs_left += n - row;
   }
 
-  Stride stride(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  Stride stride(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), options.block_seconds);
   for (std::size_t next = 0; next < left.size();) {
     if (options.stop && options.stop()) return run;
     PairRows block;
@@ -74,7 +73,7 @@ PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Che
       next += rows.size();
       stride.learn(seconds_since(before));
       for (const std::uint32_t row : rows) pairs_done += n - row;
-    } while (next < left.size() && seconds_since(begun) < kBlockSeconds && !(options.stop && options.stop()));
+    } while (next < left.size() && seconds_since(begun) < options.block_seconds && !(options.stop && options.stop()));
     if (checkpoint != nullptr) checkpoint->add(block);
     run.finished += static_cast<std::uint32_t>(block.row.size());
     run.rows.push_back(std::move(block));
