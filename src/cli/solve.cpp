@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "src/cli/given_options.h"
 #include "src/cli/interrupt.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/scene_options.h"
@@ -125,7 +126,7 @@ class Solve {
     report.method = method_;
     report.threads = static_cast<unsigned>(threads);
     report.seed = options_.seed;
-    report.options = options_given();
+    report.options = given_options(verb_);
     report.seconds.load = loading;
 
     const auto before_output = Clock::now();
@@ -158,16 +159,6 @@ class Solve {
     ProgressDisplay display;
     options_.progress = [&](double fraction, std::string_view label) { display.show(fraction, label); };
     return solve_scene(scene, options_);
-  }
-
-  std::map<std::string, std::string> options_given() const {
-    std::map<std::string, std::string> given;
-    for (const CLI::Option* option : verb_.get_options()) {
-      if (option == verb_.get_help_ptr()) continue;
-      const std::string name = option->get_single_name();
-      given[name] = option->count() > 0 ? CLI::detail::join(option->results(), " ") : option->get_default_str();
-    }
-    return given;
   }
 
   void end(const Report& report, const SceneSolution& solution) const {

@@ -4,7 +4,9 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <chrono>
+#include <numeric>
 
 namespace exitance {
 namespace {
@@ -17,6 +19,21 @@ struct Row {
   std::vector<PairFormFactor> pair;
   PairStatistics statistics;
 };
+
+/// Whether a corner of one lies in front of the other's plane, but for rounding.
+bool reaches_before(const RadiatorFacet& one, const RadiatorFacet& other) {
+  return std::ranges::any_of(one.loop, [&](const Vec3& v) { return dot(other.normal, v - other.loop[0]) > 0; });
+}
+
+bool seem_to_face(std::span<const ExchangeScene::Piece> a, std::span<const ExchangeScene::Piece> b) {
+  for (const ExchangeScene::Piece& p : a) {
+    for (const ExchangeScene::Piece& q : b) {
+      const RadiatorFacet &of_p = p.radiator.facets()[0], &of_q = q.radiator.facets()[0];
+      if (reaches_before(of_p, of_q) && reaches_before(of_q, of_p)) return true;
+    }
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -81,6 +98,51 @@ PairRows pair_rows(const ExchangeScene& scene, std::span<const std::uint32_t> ro
     statistics += found[r].statistics;
   }
   return result;
+}
+
+void append(PairRows& rows, const PairRows& more) {
+  const std::uint64_t before = rows.column.size();
+  const auto join = [](auto& all, const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
+  join(rows.row, more.row);
+  for (std::size_t r = 1; r < more.row_first.size(); ++r) rows.row_first.push_back(before + more.row_first[r]);
+  join(rows.column, more.column);
+  join(rows.F, more.F);
+  join(rows.F_error, more.F_error);
+  join(rows.F_reverse, more.F_reverse);
+  join(rows.F_reverse_error, more.F_reverse_error);
+  join(rows.mark, more.mark);
+}
+
+std::array<std::uint64_t, 4> pairs_by_class(std::span<const PairRows> rows, std::uint64_t patches) {
+  std::array<std::uint64_t, 4> pairs{};
+  for (const PairRows& part : rows) {
+    for (const std::uint8_t mark : part.mark) ++pairs[static_cast<std::size_t>(class_of(mark))];
+  }
+  const std::uint64_t kept = std::accumulate(pairs.begin(), pairs.end(), std::uint64_t{0});
+  pairs[static_cast<std::size_t>(PairClass::facing_away)] = patches * (patches + 1) / 2 - kept;
+  return pairs;
+}
+
+double expected_pair_density(const ExchangeScene& scene) {
+  constexpr std::size_t kSample = 256;  // of the rows, and of the columns of each
+  const std::size_t n = scene.size(), count = std::min(n, kSample);
+  if (n == 0) return 0;
+  const auto sampled = [&](std::size_t k) { return n * (2 * k + 1) / (2 * count); };
+  std::size_t facing = 0;
+  for (std::size_t r = 0; r < count; ++r) {
+    for (std::size_t c = 0; c < count; ++c) {
+      facing += seem_to_face(scene.pieces(sampled(r)), scene.pieces(sampled(c)));
+    }
+  }
+  return static_cast<double>(facing) / static_cast<double>(count * count);
+}
+
+std::uint64_t pair_rows_bytes(std::uint64_t patches, double density) {
+  // Of a pair: column, four numbers and a mark in its row; two entries in the matrix, twice while it is being sorted.
+  constexpr double kPair = sizeof(std::uint32_t) + 4 * sizeof(double) + sizeof(std::uint8_t);
+  constexpr double kEntry = sizeof(std::uint32_t) + 2 * sizeof(double);
+  const double n = static_cast<double>(patches), pairs = density * n * (n + 1) / 2;
+  return static_cast<std::uint64_t>(std::min(pairs * (kPair + 4 * kEntry) + 64 * n, 0x1p63));
 }
 
 FormFactorMatrix matrix_of(std::span<const PairRows> rows, std::uint32_t patches) {

@@ -41,6 +41,19 @@ struct PairStatistics {
 PairRows pair_rows(const ExchangeScene& scene, std::span<const std::uint32_t> rows, const PairOptions& options,
                    PairStatistics& statistics);
 
+/// Puts more rows behind those that are there.
+void append(PairRows& rows, const PairRows& more);
+
+/// How many pairs of so many patches belong to each class; those in no row face away. Every row must be there once.
+std::array<std::uint64_t, 4> pairs_by_class(std::span<const PairRows> rows, std::uint64_t patches);
+
+/// Share of all pairs of patches that do not face away, about, from a sample of up to 65,536 of them: rows keep those.
+double expected_pair_density(const ExchangeScene& scene);
+
+/// Most memory [bytes] that the rows of so many patches, and the matrix made of them, take at a time when that share of
+/// the pairs is kept. Saturates at 2^63.
+std::uint64_t pair_rows_bytes(std::uint64_t patches, double density);
+
 /// The whole matrix of so many patches; entries that are 0 without error are left out. Every row must be there once.
 FormFactorMatrix matrix_of(std::span<const PairRows> rows, std::uint32_t patches);
 

@@ -80,7 +80,10 @@ Handle create(const Draft& draft) {
   const Silence silence;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110);
-  Handle file(H5Fcreate(draft.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
+  // Without times, the same contents are the same bytes.
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation.id(), false);
+  Handle file(H5Fcreate(draft.path().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
   if (!file) draft.refuse(reason());
   return file;
 }
@@ -88,7 +91,7 @@ Handle create(const Draft& draft) {
 }  // namespace
 
 DamagedFile::DamagedFile(const std::filesystem::path& path, const std::string& what)
-    : InputError(path.string(), 0, what + "; make it anew or fetch an undamaged copy") {}
+    : InputError(path.string(), 0, what + "; make it anew or fetch an undamaged copy"), path_(path), damage_(what) {}
 
 struct ArchiveWriter::File {
   Draft draft;
@@ -103,6 +106,7 @@ struct ArchiveWriter::File {
     require(H5Pset_shuffle(layout.id()));
     require(H5Pset_deflate(layout.id(), kDeflate));
     require(H5Pset_fletcher32(layout.id()));
+    require(H5Pset_obj_track_times(layout.id(), false));
     Handle dataset(H5Dcreate2(handle.id(), name.c_str(), type, space.id(), H5P_DEFAULT, layout.id(), H5P_DEFAULT),
                    H5Dclose);
     require(dataset.id() < 0 ? -1 : 0);

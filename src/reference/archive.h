@@ -3,7 +3,7 @@
 //
 // Every vector is chunked, shuffled, deflated and has a Fletcher-32 checksum a chunk; texts are vectors of strings of a
 // fixed length. Written in the format of HDF5 1.10, in which the rest of the file has checksums too. Any HDF5 tool
-// reads them. From one thread at a time: the library is not thread-safe.
+// reads them. The same contents are the same bytes. From one thread at a time: the library is not thread-safe.
 
 #include <cstdint>
 #include <filesystem>
@@ -21,6 +21,13 @@ namespace exitance {
 class DamagedFile : public InputError {
  public:
   DamagedFile(const std::filesystem::path& path, const std::string& what);
+
+  const std::filesystem::path& path() const { return path_; }
+  const std::string& damage() const { return damage_; }  ///< without the path, and without what to do about it
+
+ private:
+  std::filesystem::path path_;
+  std::string damage_;
 };
 
 class ArchiveWriter {

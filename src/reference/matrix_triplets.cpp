@@ -105,20 +105,22 @@ class TripletReader {
 
 }  // namespace
 
-void write_matrix_triplets(const std::filesystem::path& path, const FormFactorMatrix& matrix) {
-  write_whole_file(path, [&](std::ostream& out) {
-    out << kHeader << '\n';
-    fmt::memory_buffer lines;
-    for (std::size_t i = 0; i < matrix.rows(); ++i) {
-      lines.clear();
-      for (std::uint64_t k = matrix.row_first[i]; k < matrix.row_first[i + 1]; ++k) {
-        if (matrix.F[k] == 0) continue;
-        fmt::format_to(std::back_inserter(lines), "{},{},{:.17g},{:.17g}\n", i, matrix.column[k], matrix.F[k],
-                       matrix.F_error[k]);
-      }
-      out.write(lines.data(), static_cast<std::streamsize>(lines.size()));
+void write_triplets(std::ostream& out, const FormFactorMatrix& matrix) {
+  out << kHeader << '\n';
+  fmt::memory_buffer lines;
+  for (std::size_t i = 0; i < matrix.rows(); ++i) {
+    lines.clear();
+    for (std::uint64_t k = matrix.row_first[i]; k < matrix.row_first[i + 1]; ++k) {
+      if (matrix.F[k] == 0) continue;
+      fmt::format_to(std::back_inserter(lines), "{},{},{:.17g},{:.17g}\n", i, matrix.column[k], matrix.F[k],
+                     matrix.F_error[k]);
     }
-  });
+    out.write(lines.data(), static_cast<std::streamsize>(lines.size()));
+  }
+}
+
+void write_matrix_triplets(const std::filesystem::path& path, const FormFactorMatrix& matrix) {
+  write_whole_file(path, [&](std::ostream& out) { write_triplets(out, matrix); });
 }
 
 MatrixRecord read_matrix_triplets(const std::filesystem::path& path, std::optional<std::uint32_t> rows) {

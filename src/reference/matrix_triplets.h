@@ -5,12 +5,16 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <ostream>
 
 #include "src/reference/matrix_file.h"
 
 namespace exitance {
 
 /// Rows ascending, columns ascending in a row.
+void write_triplets(std::ostream& out, const FormFactorMatrix& matrix);
+
+/// The same, as a file that is written whole or not at all.
 void write_matrix_triplets(const std::filesystem::path& path, const FormFactorMatrix& matrix);
 
 /// See read_matrix. Entries may come in any order. The header may also be "i,j,F", of programs that know no error.

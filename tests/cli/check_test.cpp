@@ -63,6 +63,8 @@ TEST(Check, TakesView3DsScenesAndSoDoesSolve) {
   const Outcome solved = run("solve --json " + scene);
   EXPECT_EQ(solved.code, 0);
   EXPECT_EQ(nlohmann::json::parse(solved.out).at("patches"), 7);
+}
+
 nlohmann::json closure_of(const std::string& arguments) {
   const Outcome outcome = run("check --json " + arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;

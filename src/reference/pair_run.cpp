@@ -1,0 +1,86 @@
+#include "src/reference/pair_run.h"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <chrono>
+#include <span>
+
+#include "src/reference/archive.h"
+
+namespace exitance {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// How many rows to ask for at a time, so that it takes a fraction of a block.
+class Stride {
+ public:
+  Stride(std::size_t threads, double block_seconds) : least_(threads), rows_(threads), aim_(0.5 * block_seconds) {}
+
+  std::size_t rows() const { return rows_; }
+  void learn(double seconds) {
+    const double fitting = aim_ / std::max(seconds, 1e-6) * static_cast<double>(rows_);
+    rows_ = static_cast<std::size_t>(std::clamp(fitting, static_cast<double>(least_), 4 * static_cast<double>(rows_)));
+  }
+
+ private:
+  std::size_t least_, rows_;
+  double aim_;
+};
+
+std::vector<PairRows> finished_rows(const Checkpoint& checkpoint) {
+  try {
+    return checkpoint.finished();
+  } catch (const DamagedFile& damaged) {
+    throw InputError(damaged.path().string(), 0, damaged.damage() + "; remove it, and its rows are computed again");
+  }
+}
+
+}  // namespace
+
+PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Checkpoint* checkpoint) {
+  const auto n = static_cast<std::uint32_t>(scene.size());
+  PairRun run;
+  if (checkpoint != nullptr) run.rows = finished_rows(*checkpoint);
+  std::vector<bool> is_finished(n);
+  for (const PairRows& part : run.rows) {
+    for (const std::uint32_t row : part.row) is_finished.at(row) = true;
+    run.resumed += static_cast<std::uint32_t>(part.row.size());
+  }
+  run.finished = run.resumed;
+  std::vector<std::uint32_t> left;
+  double pairs_left = 0, pairs_done = 0;
+  for (std::uint32_t row = 0; row < n; ++row) {
+    if (is_finished[row]) continue;
+    left.push_back(row);
+    pairs_left += n - row;
+  }
+
+  Stride stride(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), options.block_seconds);
+  for (std::size_t next = 0; next < left.size();) {
+    if (options.stop && options.stop()) return run;
+    PairRows block;
+    const auto begun = Clock::now();
+    do {
+      const auto before = Clock::now();
+      const auto rows = std::span(left).subspan(next, std::min(stride.rows(), left.size() - next));
+      append(block, pair_rows(scene, rows, options.pairs, run.statistics));
+      next += rows.size();
+      stride.learn(seconds_since(before));
+      for (const std::uint32_t row : rows) pairs_done += n - row;
+    } while (next < left.size() && seconds_since(begun) < options.block_seconds && !(options.stop && options.stop()));
+    if (checkpoint != nullptr) checkpoint->add(block);
+    run.finished += static_cast<std::uint32_t>(block.row.size());
+    run.rows.push_back(std::move(block));
+    if (options.progress) options.progress(pairs_done / pairs_left, "form factors");
+  }
+  run.complete = true;
+  return run;
+}
+
+}  // namespace exitance

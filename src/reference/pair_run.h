@@ -1,0 +1,35 @@
+#pragma once
+// A long run: all rows of pairs of a scene, block after block, each saved before the next.
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "src/form_factor/pair_rows.h"
+#include "src/output/progress.h"
+#include "src/reference/checkpoint.h"
+
+namespace exitance {
+
+struct PairRun {
+  std::vector<PairRows> rows;
+  PairStatistics statistics;   ///< of the rows that were computed now
+  std::uint32_t finished = 0;  ///< rows
+  std::uint32_t resumed = 0;   ///< of them, those that the checkpoint held
+  bool complete = false;       ///< whether all rows are finished; if not, `stop` ended the run
+};
+
+struct PairRunOptions {
+  PairOptions pairs;
+  double block_seconds = 2;  ///< about how much work is put into a block
+  Progress progress;         ///< by pairs, of those that were left to do
+  /// Asked after each block, from the thread that called: true ends the run. May be empty.
+  std::function<bool()> stop;
+};
+
+/// The rows that the checkpoint does not hold, ascending, in blocks of at least a row a thread. The same bits for any
+/// number of threads, and however often the run was ended. checkpoint: may be null; what it throws passes through, but
+/// that a damaged file asks to be removed.
+PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Checkpoint* checkpoint);
+
+}  // namespace exitance

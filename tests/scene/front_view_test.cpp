@@ -1,0 +1,49 @@
+#include "src/scene/front_view.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "src/scene/reader.h"
+
+namespace exitance {
+namespace {
+
+bool only_fronts(const std::string& name) {
+  return sees_only_fronts(read_scene(EXITANCE_SOURCE_DIR "/data/" + name));
+}
+
+TEST(FrontView, OfRoomsAndSolidsApart) {
+  EXPECT_TRUE(only_fronts("furnace_cube.toml"));
+  EXPECT_TRUE(only_fronts("box_on_floor.toml"));
+}
+
+TEST(FrontView, IsSpoiltByOpeningsAndContacts) {
+  EXPECT_FALSE(only_fronts("cornell_box.toml"));
+  EXPECT_FALSE(only_fronts("cornell_box_closed.toml"));
+}
+
+TEST(FrontView, IsSpoiltByWhatOnlyObstructsAndBySheetsAndTurnedSolids) {
+  Scene room = read_scene(EXITANCE_SOURCE_DIR "/data/furnace_cube.toml");
+  const Polygon square{{{0.4, 0.4, 0.5}, {0.6, 0.4, 0.5}, {0.6, 0.6, 0.5}, {0.4, 0.6, 0.5}}, {}};
+  Scene with_sheet = room;
+  with_sheet.surfaces.push_back({.polygon = square});
+  EXPECT_FALSE(sees_only_fronts(with_sheet));
+  with_sheet.surfaces.back().obstruction_only = true;
+  EXPECT_FALSE(sees_only_fronts(with_sheet));
+
+  // The room again, shrunk within itself: as a room in the room it shows its back, turned over it is a solid.
+  Scene nested = room;
+  for (Surface surface : room.surfaces) {
+    for (Vec3& p : surface.polygon.outer) p = {0.25 + 0.5 * p.x, 0.25 + 0.5 * p.y, 0.25 + 0.5 * p.z};
+    nested.surfaces.push_back(surface);
+  }
+  EXPECT_FALSE(sees_only_fronts(nested));
+  for (std::size_t k = room.surfaces.size(); k < nested.surfaces.size(); ++k) {
+    std::ranges::reverse(nested.surfaces[k].polygon.outer);
+  }
+  EXPECT_TRUE(sees_only_fronts(nested));
+}
+
+}  // namespace
+}  // namespace exitance
