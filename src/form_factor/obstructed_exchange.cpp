@@ -149,6 +149,7 @@ std::vector<ObstructedExchange::Cell> ObstructedExchange::parts_of(const Cell& c
   }
   if (along != kNone) {
     shapes = cut(cell.shape, events_[along].plane);
+    if (shapes.empty()) shapes = {cell.shape};  // what is cut off has no area in double precision
   } else {
     const auto [one, other] = bisect(cell.shape);
     shapes = {one, other};
@@ -167,7 +168,7 @@ std::vector<ObstructedExchange::Cell> ObstructedExchange::parts_of(const Cell& c
   return parts;
 }
 
-/// Cuts along all events, the largest cells first, as long as there are not too many cells.
+/// Cuts along all events, the oldest cells first, as long as there are not too many cells.
 void ObstructedExchange::cut_all() {
   for (std::size_t first = 0; first < cells_.size() && cells_.size() < kCellsCutFirst;) {
     if (cells_[first].uncut.empty()) {

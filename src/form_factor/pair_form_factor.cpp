@@ -29,10 +29,17 @@ ExchangeScene::ExchangeScene(const PolygonSoup& soup) : soup_(&soup) {
   }
 }
 
-ExchangeScene::ExchangeScene(const PolygonSoup& soup, const PatchMesh& mesh) : soup_(&soup) {
-  for (const Patch& patch : mesh.patches) {
-    for (const PatchPiece& piece : mesh.pieces_of(patch)) add({piece.facet, mesh.loop(piece)});
-    end_patch();
+ExchangeScene::ExchangeScene(const PolygonSoup& soup, const PatchMesh& mesh, Unit unit) : soup_(&soup) {
+  const auto add_all = [&](const auto& units) {
+    for (const auto& u : units) {
+      for (const PatchPiece& piece : mesh.pieces_of(u)) add({piece.facet, mesh.loop(piece)});
+      end_patch();
+    }
+  };
+  if (unit == Unit::patch) {
+    add_all(mesh.patches);
+  } else {
+    add_all(mesh.elements);
   }
 }
 

@@ -17,8 +17,9 @@ class ExchangeScene {
  public:
   /// Patch k is polygon k of the soup, whole. Polygons that are no patches, or have no area, exchange nothing.
   explicit ExchangeScene(const PolygonSoup& soup);
-  /// The patches of a mesh, which must be of the soup's scene and outlive this, too.
-  ExchangeScene(const PolygonSoup& soup, const PatchMesh& mesh);
+  /// The patches of a mesh, or its elements, which must be of the soup's scene and outlive this, too.
+  enum class Unit : std::uint8_t { patch, element };
+  ExchangeScene(const PolygonSoup& soup, const PatchMesh& mesh, Unit unit = Unit::patch);
 
   const PolygonSoup& soup() const { return *soup_; }
   std::size_t size() const { return area_.size(); }

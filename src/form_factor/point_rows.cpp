@@ -10,6 +10,10 @@
 namespace exitance {
 namespace {
 
+/// A point in a contact that holds only up to rounding, as of turned boxes, may see out through the gap of an ulp. What
+/// is below the rounding of 1 is no view.
+constexpr double kSeesNothing = 0x1p-53;
+
 /// One thread's work: a point of view and the row it fills.
 class RowMaker {
  public:
@@ -40,10 +44,11 @@ class RowMaker {
         front += f.F;
       }
     }
-    if (front == 0) {
+    const double seen = front + back + obstructions();
+    if (front == 0 || seen < kSeesNothing) {
       row.statistics.covered_points = 1;
     } else {
-      row.statistics.closure_max_defect = std::fabs(front + back + obstructions() - 1);
+      row.statistics.closure_max_defect = std::fabs(seen - 1);
     }
     row.statistics.stages = difference(view_.stage_counts(), stages_before);
     row.statistics.extended = view_.extended_count() - extended_before;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "src/form_factor/area_rows.h"
 #include "src/scene/input_error.h"
 #include "src/scene/scene_check.h"
 #include "src/solve/error_bound.h"
@@ -63,25 +64,30 @@ class SceneSolver {
     result_.discretisation = discretise(scene, result_.mesh);
     check(result_.discretisation);
     result_.closed = is_closed(scene);
+    result_.receivers = options.receivers;
   }
 
   SceneSolution solve() && {
     if (options_.method == Method::gather) {
       refuse_too_large_a_matrix();
       gather_all();
+    } else if (options_.receivers == Receivers::area) {
+      refuse_too_large_a_matrix();
+      shoot_with_matrix();
     } else if (!options_.max_shots && !options_.stop_is_a_limit && matrix_bytes_needed() <= options_.memory_limit) {
       shoot_with_matrix();
     } else {
       shoot_without_matrix();
     }
     measure_energy_balance();
-    if (!stopped()) measure_reciprocity();
+    if (!stopped() && options_.receivers == Receivers::points) measure_reciprocity();
     return std::move(result_);
   }
 
  private:
   // What is held at the same time: rows of elements while they grow, then those and the patches' or their transpose.
   std::uint64_t matrix_bytes_needed() const {
+    if (options_.receivers == Receivers::area) return pair_rows_bytes(result_.mesh.elements.size(), 1);
     const std::uint64_t elements = result_.mesh.elements.size(), patches = result_.mesh.patches.size();
     const auto needed = [&](double density) {
       const double rows = static_cast<double>(matrix_bytes(elements, patches, density));
@@ -100,12 +106,27 @@ class SceneSolver {
     throw LimitError(
         fmt::format("the form factors of {} elements to {} patches would take about {:.3g} GiB of memory and {:.3g} "
                     "GiB may be used; "
-                    "shooting (--method shoot) needs no matrix",
+                    "shooting at sample points (--method shoot --receivers points) needs no matrix",
                     result_.mesh.elements.size(), result_.mesh.patches.size(), static_cast<double>(needed) * 0x1p-30,
                     static_cast<double>(options_.memory_limit) * 0x1p-30));
   }
 
   bool stopped() const { return options_.stop && options_.stop(); }
+
+  FormFactorMatrix area_rows_of_elements(const Progress& report) {
+    PairOptions how;
+    how.tolerance = options_.form_factor_tolerance;
+    AreaRows rows = area_rows(result_.mesh, result_.soup, how, options_.seed, report);
+    result_.statistics.pairs = {rows.statistics.pairs[static_cast<std::size_t>(PairClass::facing_away)],
+                                rows.statistics.pairs[static_cast<std::size_t>(PairClass::open)],
+                                rows.statistics.pairs[static_cast<std::size_t>(PairClass::blocked)],
+                                rows.statistics.pairs[static_cast<std::size_t>(PairClass::partial)]};
+    result_.statistics.covered_points = rows.covered_elements;
+    result_.statistics.closure_max_defect = rows.closure_max_defect;
+    result_.closure_error = rows.largest_row_error;
+    result_.reciprocity_max_defect = rows.reciprocity_max_defect;
+    return std::move(rows.F);
+  }
 
   FormFactorMatrix rows() {
     const auto report = [&](double fraction, std::string_view label) {
@@ -113,12 +134,18 @@ class SceneSolver {
       if (fraction < 1 && stopped())
         throw LimitError("stopped before the form factors were complete; nothing was saved");
     };
-    PointRows rows = point_rows(result_.mesh, result_.soup, 0, result_.mesh.elements.size(), report);
-    result_.statistics = rows.statistics;
+    FormFactorMatrix F;
+    if (options_.receivers == Receivers::area) {
+      F = area_rows_of_elements(report);
+    } else {
+      PointRows rows = point_rows(result_.mesh, result_.soup, 0, result_.mesh.elements.size(), report);
+      result_.statistics = rows.statistics;
+      F = std::move(rows.F);
+    }
     result_.measured_points = result_.mesh.elements.size();
-    result_.element_row_sum = row_sums(rows.F);
+    result_.element_row_sum = row_sums(F);
     result_.seconds_form_factors = stopwatch_.lap();
-    return std::move(rows.F);
+    return F;
   }
 
   void gather_all() {

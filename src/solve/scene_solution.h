@@ -23,8 +23,15 @@ enum class Method : std::uint8_t {
   shoot    ///< progressive refinement (shoot.h)
 };
 
+enum class Receivers : std::uint8_t {
+  points,  ///< one sample point an element, as in George et al. 1990 (point_rows.h)
+  area     ///< the mean over each element, integrated (area_rows.h); needs the whole matrix
+};
+
 struct SolveOptions {
   Method method = Method::gather;
+  Receivers receivers = Receivers::points;
+  double form_factor_tolerance = 1e-9;  ///< of the rows of receivers `area`: absolute
   GatherMethod gather_method = GatherMethod::gauss_seidel;
   MeshOptions mesh;
   double tolerance = 1e-12;  ///< of the solver: bound of B's error relative to max B; > 0
@@ -54,13 +61,17 @@ struct SceneSolution {
   double form_factor_error = 0;              ///< what errors of form factors add to patches.error_bound
   bool stopped = false;                      ///< max_shots or `stop` ended the work before the tolerance was reached
 
-  /// Of `measured_points` elements: all of them, or a sample spread evenly where there is no matrix.
+  Receivers receivers = Receivers::points;
+  /// Of `measured_points` elements: all of them, or a sample spread evenly where there is no matrix. Of receivers
+  /// `area` the covered ones are those that may be.
   PointRowStatistics statistics;
   std::uint64_t measured_points = 0;
+  double closure_error = 0;  ///< what errors of form factors allow of the closure defect; negligible for sample points
   /// Relative, worst band (error_bound.h). None where stopped before all columns were known.
   std::optional<double> energy_balance_defect;
   /// max |A_i F_ij − A_j F_ji| / min(A_i, A_j) of up to 64 random pairs that see each other, each F integrated anew
   /// over its own receiver. With sample points as receivers this shows the error of that quadrature, not of visibility.
+  /// With receivers `area`: of up to 64 partial pairs of patches, integrated anew over both.
   /// None where no such pair was found, or time was up.
   std::optional<double> reciprocity_max_defect;
 

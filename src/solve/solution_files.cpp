@@ -59,7 +59,7 @@ Report make_report(const Scene& scene, const SceneSolution& s) {
   report.elements = s.mesh.elements.size();
   report.bands = scene.bands;
   report.unit = scene.unit;
-  report.receivers = "points";
+  report.receivers = s.receivers == Receivers::area ? "area" : "points";
   report.visibility = "exact";
   report.converged = s.patches.converged;
   report.iterations = s.patches.iterations;

@@ -83,8 +83,31 @@ TEST_F(SolveTest, EveryMethodReachesTheSameAnswer) {
   }
 }
 
+TEST_F(SolveTest, ReceiversMayBeWholeElements) {
+  const auto furnace = solve(data("furnace_cube.toml"), "--receivers area --elements 2", "furnace");
+  EXPECT_EQ(furnace.at("receivers"), "area");
+  EXPECT_THAT(vtp_array(file("furnace", "solution.vtp"), "B"), testing::Each(testing::DoubleNear(2, 1e-12)));
+  EXPECT_LT(furnace.at("closure_max_defect"), 1e-13);
+  EXPECT_LT(furnace.at("energy_balance_defect"), 1e-12);
+
+  const std::string scene = data("box_on_floor.toml"), size = "--patch-size 1 --receivers area ";
+  const auto gathered = solve(scene, size, "gather");
+  EXPECT_GT(gathered.at("pairs").at("partial"), 0);
+  EXPECT_LT(gathered.at("closure_max_defect"), 1e-7);
+  EXPECT_LT(gathered.at("reciprocity_max_defect"), 1e-8);
+  EXPECT_LT(gathered.at("energy_balance_defect"), 1e-7);
+  EXPECT_EQ(gathered.at("options").at("receivers"), "area");
+  solve(scene, size + "--method shoot", "shoot");
+  EXPECT_LE(difference("gather", "shoot"), 2e-12);
+  // Averages and sample points are different discretisations of one problem.
+  solve(scene, "--patch-size 1", "points");
+  EXPECT_GT(difference("gather", "points"), 1e-4);
+  EXPECT_LT(difference("gather", "points"), 0.1);
+}
+
 TEST_F(SolveTest, AnyNumberOfThreadsGivesTheSameBits) {
-  for (const char* method : {"gather", "shoot", "shoot --memory-limit 1e-9"}) {
+  for (const char* method :
+       {"gather", "gather --receivers area --form-factor-tolerance 1e-4", "shoot", "shoot --memory-limit 1e-9"}) {
     const std::string options = std::string("--patch-size 0.2 --method ") + method + " --threads ";
     auto one = solve(data("cornell_box_closed.toml"), options + "1", "one");
     auto two = solve(data("cornell_box_closed.toml"), options + "2", "two");

@@ -1,0 +1,81 @@
+#include "src/form_factor/area_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "src/form_factor/pair_sample.h"
+
+namespace exitance {
+namespace {
+
+/// Columns of elements summed to columns of patches; both ascend together.
+FormFactorMatrix to_patches(const FormFactorMatrix& elements, const PatchMesh& mesh) {
+  FormFactorMatrix patches;
+  patches.columns = static_cast<std::uint32_t>(mesh.patches.size());
+  for (std::size_t e = 0; e < elements.rows(); ++e) {
+    const auto columns = elements.row_columns(e);
+    const auto F = elements.row(e), F_error = elements.row_error(e);
+    const std::size_t first = patches.column.size();
+    for (std::size_t k = 0; k < F.size(); ++k) {
+      const std::uint32_t patch = mesh.elements[columns[k]].patch;
+      if (patches.column.size() > first && patches.column.back() == patch) {
+        patches.F.back() += F[k];
+        patches.F_error.back() += F_error[k] + kRoundoff * patches.F.back();
+      } else {
+        patches.column.push_back(patch);
+        patches.F.push_back(F[k]);
+        patches.F_error.push_back(F_error[k]);
+      }
+    }
+    patches.row_first.push_back(patches.column.size());
+  }
+  return patches;
+}
+
+bool may_be_covered(const PatchMesh& mesh, const PolygonSoup& soup, const Element& element) {
+  return std::ranges::any_of(mesh.pieces_of(element), [&](const PatchPiece& piece) {
+    return std::ranges::any_of(soup.coplanar(piece.facet),
+                               [&](std::uint32_t t) { return soup.covers(t, piece.facet); });
+  });
+}
+
+}  // namespace
+
+AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOptions& options, std::uint64_t seed,
+                   const Progress& progress) {
+  const ExchangeScene scene(soup, mesh, ExchangeScene::Unit::element);
+  const auto n = static_cast<std::uint32_t>(scene.size());
+  AreaRows result;
+  PairRows all;
+  constexpr std::uint32_t kBlock = 32;  // rows between two reports of progress
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t first = 0; first < n; first += kBlock) {
+    rows.resize(std::min(kBlock, n - first));
+    std::iota(rows.begin(), rows.end(), first);
+    append(all, pair_rows(scene, rows, options, result.statistics));
+    const double left = 1 - static_cast<double>(first + rows.size()) / n;
+    if (progress) progress(1 - left * left, "form factors");
+  }
+  const FormFactorMatrix elements = matrix_of(std::span(&all, 1), n);
+  const std::vector<double> sums = row_sums(elements);
+  for (std::uint32_t e = 0; e < n; ++e) {
+    const auto errors = elements.row_error(e);
+    result.largest_row_error =
+        std::max(result.largest_row_error, std::accumulate(errors.begin(), errors.end(), 0.0));
+    if (may_be_covered(mesh, soup, mesh.elements[e])) {
+      ++result.covered_elements;
+    } else {
+      result.closure_max_defect = std::max(result.closure_max_defect, std::fabs(sums[e] - 1));
+    }
+  }
+  constexpr std::size_t kPairs = 64;
+  const PairSample sample = sample_pairs(scene, std::span(&all, 1), options, kPairs, seed);
+  for (const PairDefect& pair : sample.reciprocity) {
+    result.reciprocity_max_defect = std::max(result.reciprocity_max_defect.value_or(0), pair.amount);
+  }
+  result.F = to_patches(elements, mesh);
+  return result;
+}
+
+}  // namespace exitance

@@ -1,0 +1,33 @@
+#pragma once
+// Rows of form factors averaged over elements, by integration to a tolerance.
+
+#include <cstdint>
+#include <optional>
+
+#include "src/form_factor/form_factor_matrix.h"
+#include "src/form_factor/pair_rows.h"
+#include "src/output/progress.h"
+#include "src/scene/patch_mesh.h"
+
+namespace exitance {
+
+struct AreaRows {
+  FormFactorMatrix F;  ///< elements × patches
+  PairStatistics statistics;
+  /// Elements that something in their own plane covers, wholly or in part, or might: they need not see 1 in all.
+  std::uint64_t covered_elements = 0;
+  /// Largest |Σ_q F_eq − 1| of the other elements: the defect of a closed scene, without meaning in an open one.
+  double closure_max_defect = 0;
+  double largest_row_error = 0;  ///< Σ_q F_error of the worst row: what closure may miss
+  /// Largest |A_i F_ij − A_j F_ji| / min(A_i, A_j) of some partial pairs of elements, each F integrated over its own
+  /// receiver; none where there is no such pair.
+  std::optional<double> reciprocity_max_defect;
+};
+
+/// Every pair of elements is integrated once; what an element sees of a patch is the sum of the patch's elements. In
+/// parallel; any number of threads gives the same bits. The mesh must be of the soup's scene. seed: of the
+/// pairs whose reciprocity is measured.
+AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOptions& options, std::uint64_t seed,
+                   const Progress& progress = {});
+
+}  // namespace exitance

@@ -1,0 +1,58 @@
+#include "src/form_factor/area_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "src/scene/reader.h"
+
+namespace exitance {
+namespace {
+
+AreaRows rows_of(const char* scene_file, double patch_size, std::uint32_t elements, double tolerance) {
+  const Scene scene = read_scene(std::string(EXITANCE_SOURCE_DIR) + "/data/" + scene_file);
+  const PolygonSoup soup = make_soup(scene);
+  MeshOptions mesh_options;
+  mesh_options.patch_size = patch_size;
+  mesh_options.elements_per_edge = elements;
+  const PatchMesh mesh = make_patch_mesh(scene, soup, mesh_options);
+  PairOptions options;
+  options.tolerance = tolerance;
+  return area_rows(mesh, soup, options, 1);
+}
+
+TEST(AreaRows, OfACubeAreItsClosedForms) {
+  const AreaRows whole = rows_of("furnace_cube.toml", 0, 1, 1e-12), halves = rows_of("furnace_cube.toml", 0, 2, 1e-12);
+  ASSERT_EQ(whole.F.rows(), 6u);
+  ASSERT_EQ(halves.F.rows(), 24u);
+  EXPECT_EQ(halves.F.columns, 6u);
+  constexpr double kOpposite = 0.19982489569838744;
+  for (std::size_t i = 0; i < 6; ++i) {
+    ASSERT_EQ(whole.F.row(i).size(), 5u);
+    double opposite = 1;
+    for (const double F : whole.F.row(i)) opposite = std::fmin(opposite, F);
+    EXPECT_NEAR(opposite, kOpposite, 1e-14);
+    // By symmetry each quarter of a face sees as much of the opposite face as the whole one does.
+    for (std::size_t quarter = 0; quarter < 4; ++quarter) {
+      double least = 1;
+      for (const double F : halves.F.row(4 * i + quarter)) least = std::fmin(least, F);
+      EXPECT_NEAR(least, kOpposite, 1e-13);
+    }
+  }
+  EXPECT_LT(halves.closure_max_defect, 1e-13);
+  EXPECT_EQ(halves.covered_elements, 0u);
+  EXPECT_FALSE(halves.reciprocity_max_defect) << "nothing is partial";
+}
+
+TEST(AreaRows, OfElementsAreTheirPatchsOnAverage) {
+  const AreaRows patches = rows_of("box_on_floor.toml", 1.5, 1, 1e-8),
+                 elements = rows_of("box_on_floor.toml", 1.5, 2, 1e-8);
+  EXPECT_LE(patches.closure_max_defect, patches.largest_row_error + 1e-13);
+  EXPECT_LE(elements.closure_max_defect, elements.largest_row_error + 1e-13);
+  EXPECT_LE(*elements.reciprocity_max_defect, 1e-7);
+  EXPECT_GT(elements.F.rows(), patches.F.rows());
+  EXPECT_EQ(elements.F.columns, patches.F.columns);
+}
+
+}  // namespace
+}  // namespace exitance
