@@ -20,11 +20,11 @@ struct PairRun {
 };
 
 struct PairRunOptions {
-  PairOptions pairs;
+  PairOptions pairs = {};
   double block_seconds = 2;  ///< about how much work is put into a block
-  Progress progress;         ///< by pairs, of those that were left to do
+  Progress progress = {};    ///< by pairs, of those that were left to do
   /// Asked after each block, from the thread that called: true ends the run. May be empty.
-  std::function<bool()> stop;
+  std::function<bool()> stop = {};
 };
 
 /// The rows that the checkpoint does not hold, ascending, in blocks of at least a row a thread. The same bits for any
