@@ -102,23 +102,7 @@ HalfSpace OpenRegion::half_space(std::size_t i, double extent) const {
   return {normal, dot(normal, *sides_[i].points.a) - slack};
 }
 
-/// The sign where the value in doubles does not tell.
-int OpenRegion::exact_side(std::size_t i, const Vec3& v, StageCounts& counts) const {
-  const Side& side = sides_[i];
-  const Vec3 &a = *side.points.a, &b = *side.points.b, &c = *side.points.c;
-  if (side.axis >= 0) {
-    ++counts.filter;
-    const double at = v[side.axis], of_plane = a[side.axis];
-    return at > of_plane ? side.axis_sign : at < of_plane ? -side.axis_sign : 0;
-  }
-  if (v == a || v == b || v == c) {
-    ++counts.filter;
-    return 0;
-  }
-  return side.sign * orientation(a, b, c, v, counts);
-}
-
-int OpenRegion::side(std::size_t i, const Vec3& v, StageCounts& counts) const {
+int OpenRegion::certain_side(std::size_t i, const Vec3& v, StageCounts& counts) const {
   const Block& block = blocks_[i / kLanes];
   const std::size_t lane = i % kLanes;
   const Vec3 w = v - origin_;
@@ -127,7 +111,27 @@ int OpenRegion::side(std::size_t i, const Vec3& v, StageCounts& counts) const {
     ++counts.filter;
     return value > 0 ? 1 : -1;
   }
-  return exact_side(i, v, counts);
+  return 0;
+}
+
+int OpenRegion::exact_side(std::size_t i, const Vec3& v, StageCounts& counts) const {
+  const Side& side = sides_[i];
+  const Vec3 &a = *side.points.a, &b = *side.points.b, &c = *side.points.c;
+  ++counts.filter;
+  if (side.axis >= 0) {
+    const double at = v[side.axis], of_plane = a[side.axis];
+    return at > of_plane ? side.axis_sign : at < of_plane ? -side.axis_sign : 0;
+  }
+  // In buildings nearly all zeros can be seen: v is one of the points, or a and b lie on a line along an axis that also
+  // holds v or is parallel to that from c to v.
+  if (v == a || v == b || v == c) return 0;
+  const bool x = a.x == b.x, y = a.y == b.y, z = a.z == b.z;
+  if ((x && y) || (y && z) || (z && x)) {
+    const auto same = [&](const Vec3& p) { return (!x || p.x == v.x) && (!y || p.y == v.y) && (!z || p.z == v.z); };
+    if (same(a) || same(c)) return 0;
+  }
+  --counts.filter;
+  return side.sign * orientation(a, b, c, v, counts);
 }
 
 std::optional<bool> OpenRegion::meets_at_sight(std::span<const Corner> facet, StageCounts& counts) {

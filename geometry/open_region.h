@@ -28,7 +28,16 @@ class OpenRegion {
   void remove_last();
 
   /// Sign of v against plane i, exact: +1 inside.
-  int side(std::size_t i, const Vec3& v, StageCounts& counts) const;
+  int side(std::size_t i, const Vec3& v, StageCounts& counts) const {
+    const int quick = certain_side(i, v, counts);
+    return quick != 0 ? quick : exact_side(i, v, counts);
+  }
+
+  /// The same, 0 where doubles do not tell.
+  int certain_side(std::size_t i, const Vec3& v, StageCounts& counts) const;
+
+  /// The same, to be asked where doubles do not tell.
+  int exact_side(std::size_t i, const Vec3& v, StageCounts& counts) const;
 
   /// Plane i as a half-space of an index whose coordinates are at most `extent`.
   HalfSpace half_space(std::size_t i, double extent) const;
@@ -55,7 +64,6 @@ class OpenRegion {
 
   void put(std::size_t i, const Vec3& normal, double offset, double error);
   void append(const Side& side, const Vec3& normal, double normal_error);
-  int exact_side(std::size_t i, const Vec3& v, StageCounts& counts) const;
   bool clip_leaves_some(std::size_t corners, double slack);
   bool clip_leaves_some_exactly(std::span<const Corner> facet, const PlanePoints& plane) const;
 

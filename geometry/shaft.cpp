@@ -5,12 +5,18 @@
 namespace exitance {
 namespace {
 
+constexpr int kKnownSidesBits = 12;
+constexpr std::int8_t kUnknown = 2;
+
 int dominant_axis(const Vec3& n) {
   const double x = std::fabs(n.x), y = std::fabs(n.y), z = std::fabs(n.z);
   return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
 }
 
 }  // namespace
+
+Shaft::Shaft(const PolygonSoup& soup)
+    : soup_(soup), known_sides_(std::size_t{1} << kKnownSidesBits, ~std::uint64_t{0}) {}
 
 void Shaft::reset(const ShaftEnd& a, const ShaftEnd& b) {
   box_ = {};
@@ -23,23 +29,57 @@ void Shaft::reset(const ShaftEnd& a, const ShaftEnd& b) {
     if (end.whole) {
       for (const Corner& c : soup_.corners(soup_.facets()[end.facet])) end.points.push_back(c.at);
     }
+    end.given.assign(end.points.size(), false);
     for (const Vec3& p : end.points) box_.extend(p);
   }
   facing_ = a.facet != b.facet && !coplanar(a.facet, ends_[1]) && !coplanar(b.facet, ends_[0]) &&
             set_heights(ends_[0], ends_[1]) && set_heights(ends_[1], ends_[0]);
   if (!facing_) return;
+  coplanarities_.assign(ends_[0].points.size() * ends_[1].points.size(), kUnknown);
   Box all = box_;
   all.extend(soup_.index().bounds());
   const Vec3 size = all.upper - all.lower;
   reach_ = 1.01 * (size.x + size.y + size.z);
   region_.clear(ends_[0].points.front(), reach_);
   for (const End& end : ends_) region_.add(soup_.facets()[end.facet].plane, 1);
-  add_sides(ends_[0], ends_[1]);
-  add_sides(ends_[1], ends_[0]);
+  add_sides(0);
+  add_sides(1);
+}
+
+/// Of all corners of a facet against another facet's plane, exact. Pieces of facets ask this again and again.
+Shaft::Sides Shaft::sides_of_facet(std::uint32_t facet, std::uint32_t plane_facet) {
+  const std::uint64_t key = (std::uint64_t{facet} << 32 | plane_facet) << 2;  // a soup has fewer than 2^30 facets
+  std::uint64_t& place = known_sides_[(facet * 0x9e3779b1u ^ plane_facet * 0x85ebca77u) >> (32 - kKnownSidesBits)];
+  if ((place & ~std::uint64_t{3}) != key) {
+    std::uint64_t sides = in_plane;
+    const Plane& plane = soup_.facets()[plane_facet].plane;
+    for (const Corner& c : soup_.corners(soup_.facets()[facet])) {
+      const int side = side_of(plane, c.at, counts_);
+      sides |= side > 0 ? front : side < 0 ? back : in_plane;
+      if (sides == both) break;
+    }
+    place = key | sides;
+  }
+  return static_cast<Sides>(place & 3);
+}
+
+/// Of an end. A piece lies on the side on which its facet does, whatever rounding says.
+Shaft::Sides Shaft::sides_of_end(const End& end, std::uint32_t plane_facet) {
+  const Sides of_facet = sides_of_facet(end.facet, plane_facet);
+  if (end.whole || of_facet != both) return of_facet;
+  const Plane& plane = soup_.facets()[plane_facet].plane;
+  int sides = in_plane;
+  for (const Vec3& p : end.points) {
+    const int side = side_of(plane, p, counts_);
+    sides |= side > 0 ? front : side < 0 ? back : in_plane;
+    if (sides == both) break;
+  }
+  return static_cast<Sides>(sides);
 }
 
 /// Whether some of an end lies above the other's plane.
 bool Shaft::set_heights(End& end, const End& other) {
+  if ((sides_of_facet(end.facet, other.facet) & front) == 0) return false;
   const Plane& plane = soup_.facets()[other.facet].plane;
   end.height.clear();
   bool some = false;
@@ -47,45 +87,67 @@ bool Shaft::set_heights(End& end, const End& other) {
     end.height.push_back(static_cast<std::int8_t>(side_of(plane, p, counts_)));
     some = some || end.height.back() > 0;
   }
-  if (!some || end.whole) return some;
-  // A piece reaches no higher than its facet, whatever rounding says.
-  const auto corners = soup_.corners(soup_.facets()[end.facet]);
-  return std::any_of(corners.begin(), corners.end(),
-                     [&](const Corner& c) { return side_of(plane, c.at, counts_) > 0; });
+  return some;
 }
 
-/// Adds the planes that hold an edge of the one end and a vertex of the other above its plane and that support the hull
+/// Adds the planes that hold an edge of one end and a vertex of the other above its plane and that support the hull
 /// there: the one that is turned farthest outward about the edge. An edge that is none of the hull's has no such plane;
 /// planes that support the hull only with vertices below do not bound what is above.
-void Shaft::add_sides(const End& one, const End& other) {
-  const std::size_t n = one.points.size();
+void Shaft::add_sides(std::size_t e) {
+  const End &one = ends_[e], &other = ends_[1 - e];
+  const std::size_t n = one.points.size(), m = other.points.size();
+  const bool above = std::all_of(other.height.begin(), other.height.end(), [](std::int8_t h) { return h > 0; });
+  // Whether the other's edge j lies in the plane through edge k and point j: the sign of the point after, where doubles
+  // do not tell. The ends ask this of the same four points.
+  const auto coplanarity = [&](std::size_t k, std::size_t j) -> std::int8_t& {
+    return coplanarities_[e == 0 ? k * m + j : j * n + k];
+  };
   for (std::size_t k = 0; k < n; ++k) {
     const Vec3 &p = one.points[k], &q = one.points[k + 1 < n ? k + 1 : 0];
-    if (p == q) continue;
-    bool added = false;
-    for (std::size_t j = 0; j < other.points.size(); ++j) {
+    if (p == q || one.given[k]) continue;
+    const std::size_t plane = region_.count();
+    std::size_t farthest = m;
+    for (std::size_t j = 0; j < m; ++j) {
       const Vec3& v = other.points[j];
-      if (other.height[j] <= 0 || (added && region_.side(region_.count() - 1, v, counts_) >= 0)) continue;
-      if (added) region_.remove_last();
+      if (other.height[j] <= 0) continue;
+      if (farthest < m) {
+        int side = region_.certain_side(plane, v, counts_);
+        if (side == 0) {
+          const bool next = j == farthest + 1, last = farthest == 0 && j + 1 == m;
+          std::int8_t unshared = kUnknown;
+          std::int8_t& known = next ? coplanarity(k, farthest) : last ? coplanarity(k, j) : unshared;
+          const int turn = next || !last ? 1 : -1;
+          if (known == kUnknown) known = static_cast<std::int8_t>(turn * region_.exact_side(plane, v, counts_));
+          side = turn * known;
+        }
+        if (side >= 0) continue;
+        region_.remove_last();
+      }
       region_.add(q, p, v);
-      added = true;
+      farthest = j;
     }
-    if (added && !supports(region_.count() - 1)) region_.remove_last();
+    if (farthest == m) continue;
+    // Of whole facets nothing is rounded: there is one order of turning about the edge, and the end is convex.
+    if (!(one.whole && above) && !supports(plane, one, other, above ? farthest : m)) {
+      region_.remove_last();
+      continue;
+    }
+    ends_[1 - e].given[farthest] = ends_[1 - e].given[farthest] || coplanarity(k, farthest) == 0;
+    if (farthest == 0) ends_[1 - e].given[m - 1] = ends_[1 - e].given[m - 1] || coplanarity(k, m - 1) == 0;
   }
 }
 
-/// Whether all points of both ends lie inside a plane or on it, and some inside: not when one end crosses the plane of
-/// the other, or when rounding has put the plane wrong.
-bool Shaft::supports(std::size_t plane) {
+/// Whether all points of one end and the first of the other lie inside a plane or on it, and some of the one inside:
+/// not when one end crosses the plane of the other, or when rounding has put the plane wrong.
+bool Shaft::supports(std::size_t plane, const End& one, const End& other, std::size_t count) {
   bool some_inside = false;
-  for (const End& end : ends_) {
-    for (const Vec3& p : end.points) {
-      const int side = region_.side(plane, p, counts_);
-      if (side < 0) return false;
-      some_inside = some_inside || side > 0;
-    }
-  }
-  return some_inside;
+  const auto not_outside = [&](const Vec3& p) {
+    const int side = region_.side(plane, p, counts_);
+    some_inside = some_inside || side > 0;
+    return side >= 0;
+  };
+  return std::all_of(one.points.begin(), one.points.end(), not_outside) && some_inside &&
+         std::all_of(other.points.begin(), other.points.begin() + static_cast<std::ptrdiff_t>(count), not_outside);
 }
 
 bool Shaft::coplanar(std::uint32_t facet, const End& end) const {
@@ -129,41 +191,18 @@ Shaft::Overlap Shaft::cover(std::uint32_t facet, std::size_t e) {
   return Overlap::blocking;
 }
 
-/// Whether the shaft lies on one side of a plane: as far as its ends' points tell, or the facets they are pieces of.
-bool Shaft::beside(const Plane& plane) {
-  const auto on_one_side = [&](const auto& visit) {
-    bool front = false, back = false;
-    const auto see = [&](const Vec3& v) {
-      const int side = side_of(plane, v, counts_);
-      front = front || side > 0;
-      back = back || side < 0;
-      return !(front && back);
-    };
-    return visit(see);
-  };
-  if (on_one_side([&](const auto& see) {
-        return std::all_of(ends_.begin(), ends_.end(),
-                           [&](const End& end) { return std::all_of(end.points.begin(), end.points.end(), see); });
-      })) {
-    return true;
-  }
-  if (ends_[0].whole && ends_[1].whole) return false;
-  return on_one_side([&](const auto& see) {
-    return std::all_of(ends_.begin(), ends_.end(), [&](const End& end) {
-      const auto corners = soup_.corners(soup_.facets()[end.facet]);
-      return std::all_of(corners.begin(), corners.end(), [&](const Corner& c) { return see(c.at); });
-    });
-  });
+/// Whether the shaft lies on one side of a facet's plane, as far as its ends tell.
+bool Shaft::beside(std::uint32_t facet) {
+  const Sides first = sides_of_end(ends_[0], facet);
+  return first != both && (first | sides_of_end(ends_[1], facet)) != both;
 }
 
 bool Shaft::enters(std::uint32_t facet) {
+  if (beside(facet)) return false;
   const Facet& f = soup_.facets()[facet];
   const auto corners = soup_.corners(f);
-  if (const auto known = region_.meets_at_sight(corners, counts_)) {
-    if (!*known) return false;
-    return !beside(f.plane);
-  }
-  return !beside(f.plane) && region_.meets(corners, f.plane.points, counts_);
+  const auto at_sight = region_.meets_at_sight(corners, counts_);
+  return at_sight ? *at_sight : region_.meets(corners, f.plane.points, counts_);
 }
 
 Shaft::Overlap Shaft::overlap(std::uint32_t item) {
@@ -180,7 +219,7 @@ Shaft::Overlap Shaft::overlap_of_facet(std::uint32_t facet) {
     if (coplanar(facet, ends_[e])) return cover(facet, e);
   }
   if (!enters(facet)) return Overlap::outside;
-  return blocks(soup_.facets()[facet]) ? Overlap::blocking : Overlap::partial;
+  return blocks(facet) ? Overlap::blocking : Overlap::partial;
 }
 
 Shaft::Overlap Shaft::overlap_of_shell(std::uint32_t index) {
@@ -201,22 +240,17 @@ Shaft::Overlap Shaft::overlap_of_shell(std::uint32_t index) {
 
 /// Whether every line between the ends crosses a facet that enters: the ends lie on different sides of its plane, and
 /// each plane through one of its edges and a point of the one end has all of the other end on its inner side.
-bool Shaft::blocks(const Facet& facet) {
-  int side[2] = {0, 0};
-  for (std::size_t e = 0; e < 2; ++e) {
-    for (const Vec3& p : ends_[e].points) {
-      const int s = side_of(facet.plane, p, counts_);
-      if (s != 0 && side[e] != 0 && s != side[e]) return false;
-      if (s != 0) side[e] = s;
-    }
-  }
-  if (side[0] * side[1] >= 0) return false;
-  const auto corners = soup_.corners(facet);
+bool Shaft::blocks(std::uint32_t facet) {
+  const Sides first = sides_of_end(ends_[0], facet);
+  if (first != front && first != back) return false;
+  if (sides_of_end(ends_[1], facet) != (first == front ? back : front)) return false;
+  const auto corners = soup_.corners(soup_.facets()[facet]);
+  const int outside = first == front ? 1 : -1;
   for (std::size_t k = 0; k < corners.size(); ++k) {
     const Vec3 &u = corners[k].at, &v = corners[k + 1 < corners.size() ? k + 1 : 0].at;
     for (const Vec3& a : ends_[0].points) {
       for (const Vec3& b : ends_[1].points) {
-        if (orientation(u, v, a, b, counts_) * side[0] > 0) return false;
+        if (orientation(u, v, a, b, counts_) == outside) return false;
       }
     }
   }

@@ -52,7 +52,7 @@ class Shaft {
     blocking  ///< blocks every line between interior points of the ends: hides all
   };
 
-  explicit Shaft(const PolygonSoup& soup) : soup_(soup) {}
+  explicit Shaft(const PolygonSoup& soup);
   Shaft(const PolygonSoup& soup, const ShaftEnd& a, const ShaftEnd& b) : Shaft(soup) { reset(a, b); }
   Shaft(const Shaft&) = delete;  // planes point to the ends' points
   Shaft& operator=(const Shaft&) = delete;
@@ -78,19 +78,25 @@ class Shaft {
     bool whole = true;
     std::vector<Vec3> points;
     std::vector<std::int8_t> height;  ///< sign of each point against the other end's plane
+    std::vector<std::uint8_t> given;  ///< whether the edge from the point lies in a plane that the other end has added
   };
 
+  /// Of a set of points against a plane.
+  enum Sides : std::uint8_t { in_plane = 0, front = 1, back = 2, both = 3 };
+
+  Sides sides_of_facet(std::uint32_t facet, std::uint32_t plane_facet);
+  Sides sides_of_end(const End& end, std::uint32_t plane_facet);
   bool set_heights(End& end, const End& other);
-  void add_sides(const End& one, const End& other);
-  bool supports(std::size_t plane);
+  void add_sides(std::size_t end);
+  bool supports(std::size_t plane, const End& one, const End& other, std::size_t count);
   bool coplanar(std::uint32_t facet, const End& end) const;
   void set_prism(std::span<const Vec3> loop, const Vec3& normal);
   Overlap cover(std::uint32_t facet, std::size_t end);
-  bool beside(const Plane& plane);
+  bool beside(std::uint32_t facet);
   bool enters(std::uint32_t facet);
   Overlap overlap_of_facet(std::uint32_t facet);
   Overlap overlap_of_shell(std::uint32_t shell);
-  bool blocks(const Facet& facet);
+  bool blocks(std::uint32_t facet);
   bool blocks(const Shell& shell);
   bool crosses(const Shell& shell, const Vec3& from, const Vec3& to);
 
@@ -103,6 +109,8 @@ class Shaft {
   OpenRegion prism_;
   std::vector<Vec3> loop_, lifted_;  ///< of the prism
   std::vector<HalfSpace> half_spaces_;
+  std::vector<std::int8_t> coplanarities_;  ///< [edge of the first end][edge of the second], where asked for
+  std::vector<std::uint64_t> known_sides_;  ///< of facets against planes of facets: a cache
   StageCounts counts_;
 };
 

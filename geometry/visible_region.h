@@ -280,7 +280,8 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
   const bool in_plane = std::binary_search(coplanar.begin(), coplanar.end(), facet);
   const bool covers =
       in_plane && (facing_source_ > 0 ? soup_.covers(facet, source_facet_) : soup_.covers_back(facet, source_facet_));
-  if (in_plane && !covers) return Effect::none;
+  // Facets of one polygon that lie in one plane only up to rounding may hide each other by as little.
+  if (in_plane && !covers && f.polygon != facets[source_facet_].polygon) return Effect::none;
   if (added_.size() == count_) added_.emplace_back();
   Added& added = added_[count_];
 

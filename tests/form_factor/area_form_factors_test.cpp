@@ -237,11 +237,11 @@ TEST(AreaFormFactors, OpenMeansOpen) {
 TEST(AreaFormFactors, ABudgetThatEndsIsSaidSo) {
   const PolygonSoup soup(std::vector{kFloor, kWall, kPlate}, std::vector{Role::patch, Role::patch, Role::sheet});
   const ExchangeScene scene(soup);
-  PairOptions few = options(1e-15);
+  PairOptions few = options(1e-16);
   few.points = 500;
   const PairFormFactor f = PairIntegrator(scene).form_factor(0, 1, few);
   EXPECT_FALSE(f.reached);
-  EXPECT_GT(f.F_error, 1e-15);
+  EXPECT_GT(f.F_error, 1e-16);
   EXPECT_NEAR(f.F, pair(kFloor, kWall, {kPlate}, 1e-12).F, f.F_error);
 }
 
