@@ -27,7 +27,7 @@ struct PairRunOptions {
   std::function<bool()> stop = {};
 };
 
-/// The rows that the checkpoint does not hold, ascending, in blocks of at least a row a thread. The same bits for any
+/// The rows that the checkpoint does not hold, ascending, in blocks of at least a row. The same bits for any
 /// number of threads, and however often the run was ended. checkpoint: may be null; what it throws passes through, but
 /// that a damaged file asks to be removed.
 PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Checkpoint* checkpoint);
