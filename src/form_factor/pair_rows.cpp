@@ -13,12 +13,25 @@ namespace {
 
 constexpr std::uint8_t kReached = 0x80;
 
-/// One row while threads work on several.
-struct Row {
-  std::vector<std::uint32_t> column;
-  std::vector<PairFormFactor> pair;
-  PairStatistics statistics;
+/// Pairs of one row that a thread works on: rows take too differently long to be given out whole.
+struct Stretch {
+  std::size_t row = 0;  ///< its place among the rows asked for
+  std::uint32_t first = 0, last = 0;
+  std::vector<std::uint32_t> column = {};
+  std::vector<PairFormFactor> pair = {};
+  PairStatistics statistics = {};
 };
+
+std::vector<Stretch> stretches_of(std::span<const std::uint32_t> rows, std::uint32_t patches) {
+  constexpr std::uint32_t kPairs = 32;
+  std::vector<Stretch> stretches;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::uint32_t j = rows[r]; j < patches; j += std::min(kPairs, patches - j)) {
+      stretches.push_back({.row = r, .first = j, .last = j + std::min(kPairs, patches - j)});
+    }
+  }
+  return stretches;
+}
 
 /// Whether a corner of one lies in front of the other's plane, but for rounding.
 bool reaches_before(const RadiatorFacet& one, const RadiatorFacet& other) {
@@ -60,42 +73,45 @@ PairStatistics& PairStatistics::operator+=(const PairStatistics& other) {
 PairRows pair_rows(const ExchangeScene& scene, std::span<const std::uint32_t> rows, const PairOptions& options,
                    PairStatistics& statistics) {
   using Clock = std::chrono::steady_clock;
-  std::vector<Row> found(rows.size());
+  std::vector<Stretch> stretches = stretches_of(rows, static_cast<std::uint32_t>(scene.size()));
   tbb::enumerable_thread_specific<PairIntegrator> integrators([&] { return PairIntegrator(scene); });
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows.size(), 1), [&](const auto& some) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, stretches.size(), 1), [&](const auto& some) {
     PairIntegrator& integrator = integrators.local();
-    for (std::size_t r = some.begin(); r < some.end(); ++r) {
-      Row& row = found[r];
+    for (std::size_t s = some.begin(); s < some.end(); ++s) {
+      Stretch& stretch = stretches[s];
       auto before = Clock::now();
-      for (std::uint32_t j = rows[r]; j < scene.size(); ++j) {
-        const PairFormFactor pair = integrator.form_factor(rows[r], j, options);
+      for (std::uint32_t j = stretch.first; j < stretch.last; ++j) {
+        const PairFormFactor pair = integrator.form_factor(rows[stretch.row], j, options);
         const auto now = Clock::now();
         const auto kind = static_cast<std::size_t>(pair.kind);
-        ++row.statistics.pairs[kind];
-        row.statistics.seconds[kind] += std::chrono::duration<double>(now - before).count();
-        row.statistics.points += pair.points;
-        row.statistics.unreached += !pair.reached;
+        ++stretch.statistics.pairs[kind];
+        stretch.statistics.seconds[kind] += std::chrono::duration<double>(now - before).count();
+        stretch.statistics.points += pair.points;
+        stretch.statistics.unreached += !pair.reached;
         before = now;
         if (pair.kind == PairClass::facing_away) continue;
-        row.column.push_back(j);
-        row.pair.push_back(pair);
+        stretch.column.push_back(j);
+        stretch.pair.push_back(pair);
       }
     }
   });
   PairRows result;
+  auto stretch = stretches.begin();
   for (std::size_t r = 0; r < rows.size(); ++r) {
     result.row.push_back(rows[r]);
-    for (std::size_t k = 0; k < found[r].pair.size(); ++k) {
-      const PairFormFactor& pair = found[r].pair[k];
-      result.column.push_back(found[r].column[k]);
-      result.F.push_back(pair.F);
-      result.F_error.push_back(pair.F_error);
-      result.F_reverse.push_back(pair.F_reverse);
-      result.F_reverse_error.push_back(pair.F_reverse_error);
-      result.mark.push_back(mark_of(pair));
+    for (; stretch != stretches.end() && stretch->row == r; ++stretch) {
+      for (std::size_t k = 0; k < stretch->pair.size(); ++k) {
+        const PairFormFactor& pair = stretch->pair[k];
+        result.column.push_back(stretch->column[k]);
+        result.F.push_back(pair.F);
+        result.F_error.push_back(pair.F_error);
+        result.F_reverse.push_back(pair.F_reverse);
+        result.F_reverse_error.push_back(pair.F_reverse_error);
+        result.mark.push_back(mark_of(pair));
+      }
+      statistics += stretch->statistics;
     }
     result.row_first.push_back(result.column.size());
-    statistics += found[r].statistics;
   }
   return result;
 }

@@ -1,7 +1,5 @@
 #include "src/reference/pair_run.h"
 
-#include <tbb/global_control.h>
-
 #include <algorithm>
 #include <chrono>
 #include <span>
@@ -20,16 +18,16 @@ double seconds_since(Clock::time_point start) {
 /// How many rows to ask for at a time, so that it takes a fraction of a block.
 class Stride {
  public:
-  Stride(std::size_t threads, double block_seconds) : least_(threads), rows_(threads), aim_(0.5 * block_seconds) {}
+  explicit Stride(double block_seconds) : aim_(0.5 * block_seconds) {}
 
   std::size_t rows() const { return rows_; }
   void learn(double seconds) {
     const double fitting = aim_ / std::max(seconds, 1e-6) * static_cast<double>(rows_);
-    rows_ = static_cast<std::size_t>(std::clamp(fitting, static_cast<double>(least_), 4 * static_cast<double>(rows_)));
+    rows_ = static_cast<std::size_t>(std::clamp(fitting, 1.0, 4 * static_cast<double>(rows_)));
   }
 
  private:
-  std::size_t least_, rows_;
+  std::size_t rows_ = 1;
   double aim_;
 };
 
@@ -61,7 +59,7 @@ PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Che
     pairs_left += n - row;
   }
 
-  Stride stride(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), options.block_seconds);
+  Stride stride(options.block_seconds);
   for (std::size_t next = 0; next < left.size();) {
     if (options.stop && options.stop()) return run;
     PairRows block;

@@ -20,14 +20,14 @@ struct PairRun {
 };
 
 struct PairRunOptions {
-  PairOptions pairs;
+  PairOptions pairs = {};
   double block_seconds = 2;  ///< about how much work is put into a block
-  Progress progress;         ///< by pairs, of those that were left to do
+  Progress progress = {};    ///< by pairs, of those that were left to do
   /// Asked after each block, from the thread that called: true ends the run. May be empty.
-  std::function<bool()> stop;
+  std::function<bool()> stop = {};
 };
 
-/// The rows that the checkpoint does not hold, ascending, in blocks of at least a row a thread. The same bits for any
+/// The rows that the checkpoint does not hold, ascending, in blocks of at least a row. The same bits for any
 /// number of threads, and however often the run was ended. checkpoint: may be null; what it throws passes through, but
 /// that a damaged file asks to be removed.
 PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Checkpoint* checkpoint);

@@ -13,9 +13,8 @@ namespace {
 class PairRunTest : public testing::Test {
  protected:
   static PairRunOptions stopped_after(int blocks) {
-    return {.pairs = {.tolerance = 1e-6}, .progress = {}, .block_seconds = 0, .stop = [left = blocks]() mutable {
-              return left-- <= 0;
-            }};
+    return {
+        .pairs = {.tolerance = 1e-6}, .block_seconds = 0, .stop = [left = blocks]() mutable { return left-- <= 0; }};
   }
   static PairRunOptions whole() { return {.pairs = {.tolerance = 1e-6}}; }
 
