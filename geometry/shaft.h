@@ -91,6 +91,7 @@ class Shaft {
   bool supports(std::size_t plane, const End& one, const End& other, std::size_t count);
   bool coplanar(std::uint32_t facet, const End& end) const;
   void set_prism(std::span<const Vec3> loop, const Vec3& normal);
+  bool overlap_in_plane(const Facet& facet, std::span<const Vec3> loop, const Vec3& normal, const Plane& in_front);
   Overlap cover(std::uint32_t facet, std::size_t end);
   bool beside(std::uint32_t facet);
   bool enters(std::uint32_t facet);
