@@ -547,9 +547,8 @@ bool in_one_plane_but_for_rounding(const Oracle& oracle, std::uint32_t facet, st
   const ExactItem item = oracle.item(index);
   return std::ranges::any_of(item.planes, [&](const ExactSide& plane) {
     return std::ranges::all_of(oracle.loop(facet), [&](const Point& p) {
-      const double distance = CGAL::to_double(plane.value(p));
-      return distance * distance <= 1e-20 * CGAL::to_double(plane.normal.squared_length()) *
-                                        CGAL::to_double((p - plane.origin).squared_length());
+      const Rational value = plane.value(p), far = plane.normal.squared_length() * (p - plane.origin).squared_length();
+      return value == 0 || CGAL::to_double(value * value / far) <= 1e-20;
     });
   });
 }
