@@ -132,8 +132,11 @@ void Shaft::add_sides(std::size_t e) {
       region_.remove_last();
       continue;
     }
-    ends_[1 - e].given[farthest] = ends_[1 - e].given[farthest] || coplanarity(k, farthest) == 0;
-    if (farthest == 0) ends_[1 - e].given[m - 1] = ends_[1 - e].given[m - 1] || coplanarity(k, m - 1) == 0;
+    // An edge of the other end in this plane would find it once more: above its plane there is no other.
+    if (one.height[k] <= 0 && one.height[k + 1 < n ? k + 1 : 0] <= 0) continue;
+    auto& given = ends_[1 - e].given;
+    if (coplanarity(k, farthest) == 0) given[farthest] = 1;
+    if (farthest == 0 && coplanarity(k, m - 1) == 0) given[m - 1] = 1;
   }
 }
 
@@ -170,19 +173,30 @@ void Shaft::set_prism(std::span<const Vec3> loop, const Vec3& normal) {
   }
 }
 
-/// Of a facet in the plane of one end.
+/// Whether the interiors of a facet and of a convex loop in its plane, with this normal, overlap in front of a plane.
+bool Shaft::overlap_in_plane(const Facet& facet, std::span<const Vec3> loop, const Vec3& normal,
+                             const Plane& in_front) {
+  set_prism(loop, normal);
+  prism_.add(in_front, 1);
+  const auto corners = soup_.corners(facet);
+  const auto at_sight = prism_.meets_at_sight(corners, counts_);
+  return at_sight ? *at_sight : prism_.meets(corners, facet.plane.points, counts_);
+}
+
+/// Of a facet in the plane of one end. A piece overlaps only what its facet overlaps, whatever rounding says.
 Shaft::Overlap Shaft::cover(std::uint32_t facet, std::size_t e) {
   const End& end = ends_[e];
   if (!soup_.covers(facet, end.facet)) return Overlap::outside;
   const Facet &f = soup_.facets()[facet], &of_end = soup_.facets()[end.facet];
-  const auto corners = soup_.corners(f);
-  set_prism(end.points, of_end.plane.normal);
-  prism_.add(soup_.facets()[ends_[1 - e].facet].plane, 1);
-  const auto at_sight = prism_.meets_at_sight(corners, counts_);
-  if (!(at_sight ? *at_sight : prism_.meets(corners, f.plane.points, counts_))) return Overlap::outside;
-  loop_.clear();
-  for (const Corner& c : corners) loop_.push_back(c.at);
-  set_prism(loop_, f.plane.normal);
+  const Plane& in_front = soup_.facets()[ends_[1 - e].facet].plane;
+  if (!overlap_in_plane(f, end.points, of_end.plane.normal, in_front)) return Overlap::outside;
+  const auto loop_of = [&](const Facet& of) {
+    loop_.clear();
+    for (const Corner& c : soup_.corners(of)) loop_.push_back(c.at);
+    return std::span<const Vec3>(loop_);
+  };
+  if (!end.whole && !overlap_in_plane(f, loop_of(of_end), of_end.plane.normal, in_front)) return Overlap::outside;
+  set_prism(loop_of(f), f.plane.normal);
   for (const Vec3& v : end.points) {
     for (std::size_t i = 0; i < prism_.count(); ++i) {
       if (prism_.side(i, v, counts_) < 0) return Overlap::partial;

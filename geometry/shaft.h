@@ -24,21 +24,20 @@ struct ShaftEnd {
 ///
 /// An item, a facet or a convex shell by its number in the soup's index, *enters* when the relative interior of the
 /// facet, or of one of the shell's facets, meets the open shaft. Degenerate cases:
-///  - touching the shaft's boundary (face, edge or vertex, from inside or outside) is not entering, an item seen
-///  edge-on
-///    that has points in the open shaft does enter (partial);
+///  - touching the shaft's boundary (face, edge or vertex) from outside is not entering; an item seen edge-on that has
+///    points in the open shaft does enter (partial);
 ///  - a shell around the whole shaft does not enter: nothing of its surface lies between;
-///  - an end that crosses the other's plane counts only above it, an item that reaches only lines from its rest does
-///  not
-///    enter; such an item is blocking only when it blocks the lines from the rest, too;
+///  - an end that crosses the other's plane counts only above it: an item that reaches only lines from the rest does
+///    not enter, and one is blocking only when it blocks the lines from the rest, too;
 ///  - an end's own facet, and the shell it bounds, do not enter; other facets of a bent polygon may;
 ///  - a facet in the plane of an end (soup.coplanar) enters when it covers the end (soup.covers) on a positive area and
 ///    is blocking when it holds all of it; so does a shell that has such a facet; otherwise it does not enter;
 ///  - ends in one plane, or with nothing of the one above the other's plane, do not face each other: nothing enters;
 ///  - ends that share an edge or a vertex are no special case;
-///  - of pieces, whose points are rounded, the shaft is that of the rounded points. It is narrowed by no plane that
-///    rounding has put wrong, so that it may hold items that only touch the unrounded one; but it never crosses the
-///    plane of a facet that both ends' whole facets lie on one side of.
+///  - of pieces, whose points are rounded, the shaft is that of the rounded points: it may hold, or leave out, items
+///    that lie along the unrounded one's boundary within rounding, but it never crosses the plane of a facet that both
+///    ends' whole facets lie on one side of (neighbours do not enter), and no plane that rounding has put wrong narrows
+///    it. Pieces of polygons in one plane but for rounding have a flat shaft of rounding errors.
 ///
 /// Blocking is decided exactly but for two cases that are called partial: an end that crosses the other's plane (as
 /// above), and a shell of which no face's plane, nor an end's plane, separates one of the ends.
@@ -91,6 +90,7 @@ class Shaft {
   bool supports(std::size_t plane, const End& one, const End& other, std::size_t count);
   bool coplanar(std::uint32_t facet, const End& end) const;
   void set_prism(std::span<const Vec3> loop, const Vec3& normal);
+  bool overlap_in_plane(const Facet& facet, std::span<const Vec3> loop, const Vec3& normal, const Plane& in_front);
   Overlap cover(std::uint32_t facet, std::size_t end);
   bool beside(std::uint32_t facet);
   bool enters(std::uint32_t facet);

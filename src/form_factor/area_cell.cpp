@@ -193,7 +193,8 @@ Truncation truncation_of(std::span<const double> weighted, int order) {
   // The fall on the whole and that at the end: the slower one counts.
   double fall = rate(size, last, n - 1);
   if (n > 4) fall = std::max(fall, rate(std::max(at(n - 4), at(n - 3)), last, 2));
-  return {2 * last * std::pow(fall, static_cast<double>(n + 1)), fall};
+  const double trust = std::clamp((0.6 - fall) / 0.3, 0.0, 1.0);
+  return {30 * last * std::pow(fall, 1 + trust * static_cast<double>(n)), last, fall};
 }
 
 }  // namespace exitance

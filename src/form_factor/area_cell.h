@@ -51,14 +51,16 @@ void gauss_points(const AreaCell& cell, int order, std::vector<WeightedPoint>& p
 inline constexpr int kHighestOrder = 12;
 
 struct Truncation {
-  double error = 0;
-  double fall = 0;  ///< at most 1: what the error is multiplied by for every half order more
+  double error = 0;  ///< of an analytic integrand
+  double last = 0;   ///< size of the coefficients of highest order
+  double fall = 0;   ///< at most 1: from one order to the next
 };
 
 /// What a product Gauss rule knows of its own error, from the integrand times weight at its points alone. Their
 /// expansion in products of Legendre polynomials ends in a ring of highest order; how fast the rings fall tells what
 /// comes behind. An analytic function's coefficients fall as ρ^-k, and the rule of order n errs by less than those of
-/// order 2n; twice as much is given. Of a function with a kink the rings hardly fall, which the figure shows.
+/// order 2n; thirty times as much is given, and more where the fall is so slow that it tells little. Of a function with
+/// a kink the rings hardly fall, which the figure shows; but a small kink hides below coefficients that still fall.
 Truncation truncation_of(std::span<const double> weighted, int order);
 
 }  // namespace exitance

@@ -61,8 +61,7 @@ AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOpt
   const std::vector<double> sums = row_sums(elements);
   for (std::uint32_t e = 0; e < n; ++e) {
     const auto errors = elements.row_error(e);
-    result.largest_row_error =
-        std::max(result.largest_row_error, std::accumulate(errors.begin(), errors.end(), 0.0));
+    result.largest_row_error = std::max(result.largest_row_error, std::accumulate(errors.begin(), errors.end(), 0.0));
     if (may_be_covered(mesh, soup, mesh.elements[e])) {
       ++result.covered_elements;
     } else {

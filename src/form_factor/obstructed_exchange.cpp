@@ -9,6 +9,8 @@ namespace {
 /// Orders of a cell's first rule, which only finds out whether anything is seen, of the next one at least, and of that
 /// of halves.
 constexpr int kScoutOrder = 2, kFirstOrder = 4, kOrderOfHalves = 5;
+/// Likewise, where events of three edges may cross the cell.
+constexpr int kFirstOrderAcross = 5;
 /// So many cells are cut along events before any of them is measured.
 constexpr std::size_t kCellsCutFirst = 400;
 /// What a cell with uncut events may hide from its sample points, as a share of what could be seen at most.
@@ -25,6 +27,7 @@ ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& re
                                        std::span<const std::uint32_t> items, double most)
     : soup_(&soup), receiver_(receiver), source_(source), items_(items), most_(most) {
   events_ = visual_events(soup, receiver, source, items, complete_);
+  analytic_ = is_one_convex_body(soup, items);
   const std::vector<Vec3> loop = corners_of(soup, receiver);
   find_contacts();
   std::vector<AreaCell> shapes;
@@ -119,7 +122,7 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
   // Rounding: of each weight and product, and of the sum.
   cell.point_error += (16 + static_cast<double>(scratch_.size())) * kRoundoff * cell.integral;
   const Truncation truncation = truncation_of(weighted_, cell.order);
-  cell.error = truncation.error;
+  cell.error = analytic_ ? truncation.error : std::max(truncation.error, 0.5 * truncation.last);
   cell.fall = truncation.fall;
   // Four points tell little of what is seen, but where each of them sees nothing nothing is seen.
   if (cell.order == kScoutOrder && cell.integral > 0) {
@@ -193,7 +196,7 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
     started_ = true;
     cut_all();
     for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-      measure(view, cells_[c], kScoutOrder, tolerance);
+      measure(view, cells_[c], analytic_ ? kScoutOrder : kFirstOrderAcross, tolerance);
       running_error_ += cells_[c].error + cells_[c].point_error;
       push(c);
     }

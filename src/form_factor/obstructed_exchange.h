@@ -51,6 +51,7 @@ class ObstructedExchange {
   std::span<const std::uint32_t> items_;
   double most_ = 1, area_ = 0;
   bool complete_ = true;
+  bool analytic_ = true;  ///< within cells: no events of three edges
   std::vector<VisualEvent> events_;
   std::vector<Vec3> contacts_;  ///< corners of the source and of occluders in the receiver's plane
   std::vector<Cell> cells_;

@@ -199,4 +199,27 @@ std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& re
   return events.take();
 }
 
+bool is_one_convex_body(const PolygonSoup& soup, std::span<const std::uint32_t> items) {
+  constexpr std::size_t kMost = 64;
+  if (items.size() == 1) return true;
+  if (items.size() > kMost || items.back() >= soup.facets().size()) return false;
+  StageCounts counts;
+  for (const std::uint32_t t : items) {
+    for (const std::uint32_t other : items) {
+      for (const Corner& c : soup.corners(soup.facets()[other])) {
+        if (other != t && side_of(soup.facets()[t].plane, c.at, counts) > 0) return false;
+      }
+    }
+  }
+  std::vector<std::uint32_t> reached{items.front()};
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    for (const Corner& c : soup.corners(soup.facets()[reached[k]])) {
+      if (std::ranges::binary_search(items, c.neighbour) && std::ranges::find(reached, c.neighbour) == reached.end()) {
+        reached.push_back(c.neighbour);
+      }
+    }
+  }
+  return reached.size() == items.size();
+}
+
 }  // namespace exitance

@@ -31,4 +31,9 @@ std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& piece);
 std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& receiver, const Source& source,
                                        std::span<const std::uint32_t> items, bool& complete);
 
+/// Whether the items are one convex shell, or facets that hang together as part of the surface of one convex body. Then
+/// no line touches three edges, of it and of a convex source, without meeting a vertex: there are no events of three
+/// edges. False where there are too many to look at.
+bool is_one_convex_body(const PolygonSoup& soup, std::span<const std::uint32_t> items);
+
 }  // namespace exitance

@@ -78,7 +78,7 @@ TEST_F(BadInputTest, Usage) {
   expect_of_scene(2, cube + " --colour", "--colour");
   expect_of_scene(2, cube + " --method hierarchical", "gather,shoot");
   expect_of_scene(2, cube + " --visibility rays", "exact");
-  expect_of_scene(2, cube + " --receivers area", "points");
+  expect_of_scene(2, cube + " --receivers volume", "points");
   expect_of_scene(2, cube + " --patch-size -1", "patch size");
   expect_of_scene(2, cube + " --patch-size nan", "patch size");
   expect_of_scene(2, cube + " --patch-size wide", "--patch-size");
