@@ -24,8 +24,9 @@ class LambertSum {
     const Vec<Real> p = corners.w(from);
     const Real p_length = corners.length(from);
     const bool of_vertices = side.exact.kind == ViewPlane::Kind::edge;
-    const Vec<Real> e =
-        of_vertices ? difference<Real>(*corners.exact(to).a, *corners.exact(from).a) : corners.w(to) - p;
+    const Vec<Real> e = of_vertices && !side.exact.dropped
+                            ? difference<Real>(*corners.exact(to).a, *corners.exact(from).a)
+                            : corners.w(to) - p;
     const Real e_length = norm(e);
     const Vec<Real> w0 = p + arc.t0 * e, w1 = p + arc.t1 * e;
     const Real length0 = norm(w0), length1 = norm(w1);
