@@ -164,6 +164,7 @@ struct EdgePlane {
 
 template <class Real>
 Real square_root(const Real& v) {
+  using std::sqrt;
   return sqrt(v);
 }
 

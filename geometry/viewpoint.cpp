@@ -21,7 +21,7 @@ struct Viewpoint::State {
     std::vector<std::uint32_t> facets;  // that will_add_only
   };
 
-  explicit State(const PolygonSoup& s) : soup(s), view(s), region(view), fine(view) {}
+  explicit State(const PolygonSoup& s) : soup(s), view(s), region(view), fine(view), finest(view) {}
 
   template <class Real>
   VisibleRegion<Real>& region_of();
@@ -44,6 +44,8 @@ struct Viewpoint::State {
   bool put_items(const Source& source, int source_facing, std::span<const std::uint32_t> items);
   template <class Real>
   PointFormFactor sum(PointFormFactor result);
+  template <class Real>
+  void sum_again(const Source& source, int source_facing, PointFormFactor& result);
   template <class Put>
   PointFormFactor answer(const Source& source, double tolerance, const Put& put);
 
@@ -52,7 +54,8 @@ struct Viewpoint::State {
   std::uint64_t extended = 0;
   double hidden_value = 0;  // of the last sum, when its own error hides it
   VisibleRegion<double> region;
-  VisibleRegion<Extended> fine;
+  VisibleRegion<long double> fine;
+  VisibleRegion<Extended> finest;
   std::array<Candidates, 4> recent;  // the facets of a polygon take turns
   std::vector<Occluder> blockers;    // of this view, the latest first
   std::vector<const Vec3*> corners;
@@ -69,8 +72,12 @@ VisibleRegion<double>& Viewpoint::State::region_of() {
   return region;
 }
 template <>
-VisibleRegion<Extended>& Viewpoint::State::region_of() {
+VisibleRegion<long double>& Viewpoint::State::region_of() {
   return fine;
+}
+template <>
+VisibleRegion<Extended>& Viewpoint::State::region_of() {
+  return finest;
 }
 
 /// Adds an occluder to the current source; false when it hides all of it.
@@ -316,14 +323,23 @@ PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance,
     result.visibility = Visibility::blocked;
     return result;
   }
-  const PointFormFactor plain = sum<double>(result);
+  result = sum<double>(result);
   // All values that are given as 0 err the same way: they must not add up.
-  if (plain.error <= tolerance && hidden_value <= tolerance / 1024) return plain;
+  const auto is_good = [&] { return result.error <= tolerance && hidden_value <= tolerance / 1024; };
+  if (is_good()) return result;
   ++extended;
-  set_source<Extended>(source.facet, source_facing);
-  add_candidates<Extended>(source.facet);
-  const PointFormFactor exact = sum<Extended>(result);
-  return exact.error < plain.error ? exact : plain;
+  sum_again<long double>(source, source_facing, result);
+  if (!is_good()) sum_again<Extended>(source, source_facing, result);
+  return result;
+}
+
+/// Sums once more with more digits, over the candidates that were found; keeps what was known better before.
+template <class Real>
+void Viewpoint::State::sum_again(const Source& source, int source_facing, PointFormFactor& result) {
+  set_source<Real>(source.facet, source_facing);
+  add_candidates<Real>(source.facet);
+  const PointFormFactor again = sum<Real>(result);
+  if (again.error < result.error) result = again;
 }
 
 Viewpoint::Viewpoint(const PolygonSoup& soup) : state_(std::make_unique<State>(soup)) {}
@@ -364,7 +380,7 @@ std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {
   const PlanePoints& plane = s.soup.facets()[source.facet].plane.points;
   const auto normal = cross(difference<Extended>(*plane.b, *plane.a), difference<Extended>(*plane.c, *plane.a));
   const Extended height = dot(normal, difference<Extended>(*plane.a, s.view.receiver().point));
-  s.fine.for_each_arc([&](const Arc<Extended>& arc) {
+  s.finest.for_each_arc([&](const Arc<Extended>& arc) {
     if (!(arc.t0 < arc.t1)) return;
     const auto p = arc.cone->corners.w(arc.side->from);
     const auto e = arc.cone->corners.w(arc.side->to) - p;
