@@ -313,7 +313,8 @@ bool Viewpoint::State::put_items(const Source& source, int source_facing, std::s
 /// `put` puts what may hide something of the source, prepared and seen from the side it is told; false: all is hidden.
 template <class Put>
 PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance, const Put& put) {
-  region.set_bearable_angle(std::max(0x1p-46, tolerance / 16));
+  // Of one arc's end nearly all of the tolerance is borne at first: few are known so badly.
+  region.set_bearable_angle(std::max(0x1p-46, tolerance));
   PointFormFactor result;
   int source_facing = 0;
   const bool above = prepare(source, source_facing);
@@ -326,6 +327,9 @@ PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance,
   result = sum<double>(result);
   // All values that are given as 0 err the same way: they must not add up.
   const auto is_good = [&] { return result.error <= tolerance && hidden_value <= tolerance / 1024; };
+  if (is_good()) return result;
+  region.set_bearable_angle(std::max(0x1p-46, tolerance / 16));
+  sum_again<double>(source, source_facing, result);
   if (is_good()) return result;
   ++extended;
   sum_again<long double>(source, source_facing, result);
