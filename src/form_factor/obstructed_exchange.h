@@ -2,10 +2,12 @@
 // What two polygons exchange past others, by integrating over one of them what its points see of the other.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "geometry/viewpoint.h"
+#include "src/form_factor/edge_event.h"
 #include "src/form_factor/visual_events.h"
 
 namespace exitance {
@@ -37,11 +39,27 @@ class ObstructedExchange {
     int order = 0;  ///< of the rule that measured it; 0: none did
     double fall = 1;
     std::vector<std::uint32_t> uncut;  ///< events that concern it
+    bool mixed = false;                ///< its points see different outlines
     double integral = 0, error = 0, point_error = 0;
   };
 
+  /// Where a point of a cell lies, its form factor, and the outline of what it sees.
+  struct Sighting {
+    Vec3 point;
+    double F = 0;
+    std::uint64_t outline = 0;
+  };
+
+  PointFormFactor look(Viewpoint& view, const Vec3& from, double tolerance);
+  Sighting sight(Viewpoint& view, const Vec3& from);
+  void sight_corners(Viewpoint& view, const AreaCell& shape, std::vector<Sighting>& sightings);
+  double side_of_event(std::uint32_t e, const Vec3& x) const;
+  std::vector<AreaCell> cut_along(std::uint32_t e, const AreaCell& shape) const;
+  std::vector<std::uint32_t> events_in(Viewpoint& view, const Cell& cell);
+  std::optional<std::uint32_t> find_event(Viewpoint& view, Sighting here, Sighting there);
+  std::vector<AreaCell> separate(Viewpoint& view, const Cell& cell);
   void measure(Viewpoint& view, Cell& cell, int order, double tolerance);
-  std::vector<Cell> parts_of(const Cell& cell) const;
+  std::vector<Cell> parts_of(Viewpoint* view, const Cell& cell);
   void find_contacts();
   void add_about_contacts(const AreaCell& shape, std::vector<AreaCell>& shapes) const;
   void cut_all();
@@ -53,7 +71,8 @@ class ObstructedExchange {
   bool complete_ = true;
   bool analytic_ = true;  ///< within cells: no events of three edges
   std::vector<VisualEvent> events_;
-  std::vector<Vec3> contacts_;  ///< corners of the source and of occluders in the receiver's plane
+  std::vector<EdgeEvent> found_;  ///< events that points of a cell saw on different sides of
+  std::vector<Vec3> contacts_;    ///< corners of the source and of occluders in the receiver's plane
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> heap_;  ///< indices of cells, worst on top
   bool started_ = false;
@@ -61,6 +80,7 @@ class ObstructedExchange {
   std::uint64_t points_ = 0;
   std::vector<WeightedPoint> scratch_;
   std::vector<double> weighted_;
+  std::vector<Sighting> sightings_;
 };
 
 }  // namespace exitance
