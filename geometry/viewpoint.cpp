@@ -23,6 +23,7 @@ std::uint64_t id_of(const Vec3& v) {
   const auto bits = [](double c) { return std::bit_cast<std::uint64_t>(c + 0.0); };
   return mixed(bits(v.x) + mixed(bits(v.y) + mixed(bits(v.z) + 1)));
 }
+constexpr std::uint64_t kHorizon = 1;
 /// The same for an edge from either end.
 std::uint64_t id_of(const ViewPlane& side) {
   switch (side.kind) {
@@ -38,6 +39,14 @@ std::uint64_t id_of(const ViewPlane& side) {
 
 /// [rad] Shorter stretches of edges come and go by rounding.
 constexpr double kShortest = 1e-9;
+
+/// Whether an edge is seen along the horizon, where which of the two bounds is a matter of rounding.
+template <class Real>
+bool is_level(const ConeSide<Real>& side, const Vec3& normal) {
+  constexpr double kLevel = 1e-9;  // sine
+  const Vec<Real> n{Real(normal.x), Real(normal.y), Real(normal.z)};
+  return norm(cross(side.m, n)) <= kLevel * side.length * norm(n);
+}
 
 /// Two points of the line in which planes meet, given by a point and a normal each.
 std::pair<Vec3, Vec3> line_of(const Vec3& p, const Vec3& n, const Vec3& q, const Vec3& m) {
@@ -241,12 +250,19 @@ template <class Real>
 PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
   auto& r = region_of<Real>();
   LambertSum<Real> lambert(view.receiver().normal);
+  bool horizon = false;
   r.for_each_arc([&](const Arc<Real>& arc) {
     const Real angle = lambert.add(arc);
     if constexpr (std::is_same_v<Real, double>) {
-      if (angle > kShortest) outline += id_of(arc.side->exact);
+      if (!(angle > kShortest)) return;
+      if (is_level(*arc.side, view.receiver().normal)) {
+        horizon = true;
+      } else {
+        outline += id_of(arc.side->exact);
+      }
     }
   });
+  if (horizon) outline += kHorizon;
   result.visibility = r.occluder_count() == 0 ? Visibility::open
                       : lambert.arcs() == 0   ? Visibility::blocked
                                               : Visibility::partial;
@@ -359,7 +375,7 @@ std::vector<SeenEdge> Viewpoint::seen_edges() {
   s.region.for_each_arc([&](const Arc<double>& arc) {
     const ViewPlane& side = arc.side->exact;
     SeenEdge edge;
-    edge.id = id_of(side);
+    edge.id = is_level(*arc.side, s.view.receiver().normal) ? kHorizon : id_of(side);
     if (side.kind == ViewPlane::Kind::edge) {
       edge.a = *side.c;
       edge.b = *side.d;

@@ -133,10 +133,16 @@ PointFormFactor ObstructedExchange::look(Viewpoint& view, const Vec3& from, doub
   return f;
 }
 
+std::uint64_t ObstructedExchange::outline_of(const Viewpoint& view) const {
+  std::uint64_t outline = view.outline();
+  for (auto same = same_.find(outline); same != same_.end(); same = same_.find(outline)) outline = same->second;
+  return outline;
+}
+
 ObstructedExchange::Sighting ObstructedExchange::sight(Viewpoint& view, const Vec3& from) {
   const PointFormFactor f = look(view, from, 1);
   if (f.side != Side::front) return {from, 0, 0};
-  return {from, f.F, view.outline()};
+  return {from, f.F, outline_of(view)};
 }
 
 /// A cell's corners lie on events; what counts is what is seen just inside.
@@ -169,7 +175,7 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
     least = std::min(least, F);
     greatest = std::max(greatest, F);
     if (compare) {
-      const std::uint64_t now = front ? view.outline() : 0;
+      const std::uint64_t now = front ? outline_of(view) : 0;
       cell.mixed = cell.mixed || (&p != scratch_.data() && now != outline);
       if (&p == scratch_.data()) outline = now;
     }
@@ -220,7 +226,7 @@ std::vector<AreaCell> ObstructedExchange::cut_along(std::uint32_t e, const AreaC
 /// halving the way.
 std::optional<std::uint32_t> ObstructedExchange::find_event(Viewpoint& view, Sighting here, Sighting there) {
   const Vec3 start = here.point, end = there.point;
-  constexpr int kHalvings = 14;
+  constexpr int kHalvings = 14, kTurns = 12;
   for (int k = 0; k < kHalvings; ++k) {
     const Sighting middle = sight(view, here.point + 0.5 * (there.point - here.point));
     (middle.outline == here.outline ? here : there) = middle;
@@ -242,6 +248,17 @@ std::optional<std::uint32_t> ObstructedExchange::find_event(Viewpoint& view, Sig
     const auto e = static_cast<std::uint32_t>(events_.size() + found_.size() - 1);
     if (happens_here(e)) return e;
     found_.pop_back();
+  }
+  // Edges that coincide but for rounding take turns.
+  bool turned = false;
+  for (int k = 0; k <= kTurns; ++k) {
+    const Vec3 x = here.point + (2.0 * k / kTurns - 1) * 4 * step;
+    const std::uint64_t outline = sight(view, x).outline;
+    if (turned && outline == here.outline) {
+      same_.emplace(std::max(here.outline, there.outline), std::min(here.outline, there.outline));
+      break;
+    }
+    turned = turned || outline == there.outline;
   }
   return {};
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "geometry/viewpoint.h"
@@ -51,6 +52,7 @@ class ObstructedExchange {
   };
 
   PointFormFactor look(Viewpoint& view, const Vec3& from, double tolerance);
+  std::uint64_t outline_of(const Viewpoint& view) const;
   Sighting sight(Viewpoint& view, const Vec3& from);
   void sight_corners(Viewpoint& view, const AreaCell& shape, std::vector<Sighting>& sightings);
   double side_of_event(std::uint32_t e, const Vec3& x) const;
@@ -71,8 +73,9 @@ class ObstructedExchange {
   bool complete_ = true;
   bool analytic_ = true;  ///< within cells: no events of three edges
   std::vector<VisualEvent> events_;
-  std::vector<EdgeEvent> found_;  ///< events that points of a cell saw on different sides of
-  std::vector<Vec3> contacts_;    ///< corners of the source and of occluders in the receiver's plane
+  std::unordered_map<std::uint64_t, std::uint64_t> same_;  ///< outlines that stand for others
+  std::vector<EdgeEvent> found_;                           ///< events that points of a cell saw on different sides of
+  std::vector<Vec3> contacts_;  ///< corners of the source and of occluders in the receiver's plane
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> heap_;  ///< indices of cells, worst on top
   bool started_ = false;
