@@ -49,6 +49,31 @@ bool is_level(const ConeSide<Real>& side, const Vec3& normal) {
   return norm(cross(side.m, n)) <= kLevel * side.length * norm(n);
 }
 
+/// Ends of a stretch, as unit vectors from the point of view.
+using Ends = std::pair<Vec3, Vec3>;
+Ends ends_of(const Arc<double>& arc) {
+  const auto p = arc.cone->corners.w(arc.side->from), e = arc.cone->corners.w(arc.side->to) - p;
+  const auto direction = [&](double t) {
+    const Vec3 w{p.x + t * e.x, p.y + t * e.y, p.z + t * e.z};
+    return (1 / norm(w)) * w;
+  };
+  return {direction(arc.t0), direction(arc.t1)};
+}
+
+/// How many chains stretches form that follow each other end to end.
+std::uint64_t chains(std::span<const Ends> stretches) {
+  std::uint64_t joints = 0;
+  const auto meet = [](const Vec3& p, const Vec3& q) { return norm(p - q) <= kShortest; };
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto& [a, b] = stretches[i];
+      const auto& [c, d] = stretches[j];
+      joints += meet(a, c) || meet(a, d) || meet(b, c) || meet(b, d);
+    }
+  }
+  return stretches.size() - joints;
+}
+
 /// Two points of the line in which planes meet, given by a point and a normal each.
 std::pair<Vec3, Vec3> line_of(const Vec3& p, const Vec3& n, const Vec3& q, const Vec3& m) {
   const Vec3 d = cross(n, m);
@@ -104,6 +129,7 @@ struct Viewpoint::State {
   std::uint64_t extended = 0;
   double hidden_value = 0;    // of the last sum, when its own error hides it
   std::uint64_t outline = 0;  // of the last answer
+  std::vector<Ends> level;    // stretches along the horizon
   VisibleRegion<double> region;
   VisibleRegion<long double> fine;
   VisibleRegion<Extended> finest;
@@ -302,19 +328,19 @@ template <class Real>
 PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
   auto& r = region_of<Real>();
   LambertSum<Real> lambert(view.receiver().normal);
-  bool horizon = false;
+  level.clear();
   r.for_each_arc([&](const Arc<Real>& arc) {
     const Real angle = lambert.add(arc);
     if constexpr (std::is_same_v<Real, double>) {
       if (!(angle > kShortest)) return;
       if (is_level(*arc.side, view.receiver().normal)) {
-        horizon = true;
+        level.push_back(ends_of(arc));
       } else {
         outline += id_of(arc.side->exact);
       }
     }
   });
-  if (horizon) outline += kHorizon;
+  if (!level.empty()) outline += kHorizon * chains(level);
   result.visibility = r.occluder_count() == 0 ? Visibility::open
                       : lambert.arcs() == 0   ? Visibility::blocked
                                               : Visibility::partial;
@@ -455,13 +481,7 @@ std::vector<SeenEdge> Viewpoint::seen_edges() {
       const PlanePoints& T = *side.T;
       std::tie(edge.a, edge.b) = line_of(plane.origin, plane.normal, *T.a, cross(*T.b - *T.a, *T.c - *T.a));
     }
-    const auto p = arc.cone->corners.w(arc.side->from), e = arc.cone->corners.w(arc.side->to) - p;
-    const auto direction = [&](double t) {
-      const Vec3 w{p.x + t * e.x, p.y + t * e.y, p.z + t * e.z};
-      return (1 / norm(w)) * w;
-    };
-    edge.from = direction(arc.t0);
-    edge.to = direction(arc.t1);
+    std::tie(edge.from, edge.to) = ends_of(arc);
     if (norm(edge.to - edge.from) > kShortest) edges.push_back(edge);
   });
   return edges;
