@@ -17,12 +17,12 @@ constexpr std::size_t kCellsCutFirst = 400;
 constexpr double kUnnoticed = 4e-3;
 /// Part of the difference of what a cell's points see that its integral may be wrong by when they see different
 /// outlines.
-constexpr double kMixed = 2e-2;
+constexpr double kMixed = 3e-2;
 /// A rule's error is no more than so many times what it differs from the one before.
 constexpr double kDifference = 3;
 /// What a cell's first rule may err by, as a share of what its corners say otherwise, and of the difference of what its
 /// points see.
-constexpr double kCorners = 0.3, kSpread = 1e-2;
+constexpr double kCorners = 0.5, kSpread = 2e-2;
 /// How far inside a cell its corners are looked from, as a share of the way to the middle.
 constexpr double kInset = 1e-3;
 /// Proven error of a point's value beyond which extended precision is asked: this, or what the cell's share of the
