@@ -36,8 +36,7 @@ constexpr std::uint64_t kExtendedCost = 5;
 ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& receiver, const Source& source,
                                        std::span<const std::uint32_t> items, double most)
     : soup_(&soup), receiver_(receiver), source_(source), items_(items), most_(most) {
-  events_ = visual_events(soup, receiver, source, items, complete_);
-  analytic_ = is_one_convex_body(soup, items);
+  events_ = visual_events(soup, receiver, source, items);
   const std::vector<Vec3> loop = corners_of(soup, receiver);
   find_contacts();
   std::vector<AreaCell> shapes;

@@ -14,10 +14,12 @@
 namespace exitance {
 
 /// ∫ F(x → visible part of the source) dA over the receiver, refined on demand. The integrand is analytic but for
-/// visual events, so that cells are cut along those first; each is then integrated by a product Gauss rule, whose order
-/// rises, and which is halved where that does not help: beside events of three edges, shared edges and contacts. Where
-/// events are still uncut, a share of what could be seen at most is part of the error, because no rule notices what
-/// happens between its points. Deterministic.
+/// visual events, so that cells are cut along the straight ones that are known first. Then points of a cell are
+/// compared by the outlines of what they see: where those differ an event lies between, which is found by halving the
+/// way, and the cell is cut along it, if need be along the conic of three edges. A cell whose points and corners agree
+/// is integrated by a product Gauss rule, whose order rises, and which is halved where that does not help: beside
+/// shared edges and contacts. Where events are still uncut, a share of what could be seen at most is part of the error,
+/// because no rule notices what happens between its points. Deterministic.
 class ObstructedExchange {
  public:
   /// Receiver and source: pieces of two facets. items: what may stand between, of the soup's index, ascending.
@@ -70,8 +72,6 @@ class ObstructedExchange {
   Source receiver_, source_;
   std::span<const std::uint32_t> items_;
   double most_ = 1, area_ = 0;
-  bool complete_ = true;
-  bool analytic_ = true;  ///< within cells: no events of three edges
   std::vector<VisualEvent> events_;
   std::unordered_map<std::uint64_t, std::uint64_t> same_;  ///< outlines that stand for others
   std::vector<EdgeEvent> found_;                           ///< events that points of a cell saw on different sides of
