@@ -128,6 +128,7 @@ struct Viewpoint::State {
   View view;
   std::uint64_t extended = 0;
   double hidden_value = 0;    // of the last sum, when its own error hides it
+  bool tells_outline = false;
   std::uint64_t outline = 0;  // of the last answer
   std::vector<Ends> level;    // stretches along the horizon
   VisibleRegion<double> region;
@@ -329,10 +330,11 @@ PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
   auto& r = region_of<Real>();
   LambertSum<Real> lambert(view.receiver().normal);
   level.clear();
+  if (std::is_same_v<Real, double>) outline = 0;
   r.for_each_arc([&](const Arc<Real>& arc) {
     const Real angle = lambert.add(arc);
     if constexpr (std::is_same_v<Real, double>) {
-      if (!(angle > kShortest)) return;
+      if (!tells_outline || !(angle > kShortest)) return;
       if (is_level(*arc.side, view.receiver().normal)) {
         level.push_back(ends_of(arc));
       } else {
@@ -403,7 +405,7 @@ bool Viewpoint::State::put_items(const Source& source, int source_facing, std::s
 template <class Put>
 PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance, const Put& put) {
   // Of one arc's end nearly all of the tolerance is borne at first: few are known so badly.
-  region.set_bearable_angle(std::max(0x1p-46, tolerance));
+  region.set_bearable_angle(std::clamp(tolerance, 0x1p-46, kShortest / 16));
   PointFormFactor result;
   outline = 0;
   int source_facing = 0;
@@ -418,7 +420,7 @@ PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance,
   // All values that are given as 0 err the same way: they must not add up.
   const auto is_good = [&] { return result.error <= tolerance && hidden_value <= tolerance / 1024; };
   if (is_good()) return result;
-  region.set_bearable_angle(std::max(0x1p-46, tolerance / 16));
+  region.set_bearable_angle(std::clamp(tolerance / 16, 0x1p-46, kShortest / 16));
   sum_again<double>(source, source_facing, result);
   if (is_good()) return result;
   ++extended;
@@ -456,10 +458,12 @@ bool Viewpoint::covered() const {
 }
 
 PointFormFactor Viewpoint::form_factor(const Source& source, double tolerance) {
+  state_->tells_outline = false;
   return state_->answer(source, tolerance, [&](int facing) { return state_->put_occluders(source, facing); });
 }
 
 PointFormFactor Viewpoint::form_factor(const Source& source, std::span<const std::uint32_t> items, double tolerance) {
+  state_->tells_outline = true;
   return state_->answer(source, tolerance, [&](int facing) { return state_->put_items(source, facing, items); });
 }
 

@@ -76,8 +76,8 @@ class Viewpoint {
   /// for.
   PointFormFactor form_factor(const Source& source, std::span<const std::uint32_t> items, double tolerance);
 
-  /// A fingerprint of which edges bound what the last form factor saw, and how often each; 0 where it saw nothing.
-  /// Stretches that are next to nothing don't count.
+  /// A fingerprint of which edges bound what the last form factor saw, and how often each; 0 where it saw nothing, and
+  /// unless items were given. Stretches that are next to nothing don't count.
   std::uint64_t outline() const;
   /// Those edges themselves.
   std::vector<SeenEdge> seen_edges();
