@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "src/form_factor/area_cell.h"
 #include "src/reference/checkpoint.h"
 #include "src/reference/comparison.h"
 #include "src/reference/pair_run.h"
@@ -26,8 +27,9 @@ namespace {
 constexpr std::uint32_t kElementsPerEdge = 4;
 /// Of the error's square, what the patches have that are divided at a time.
 constexpr double kShareDivided = 0.7;
-/// A patch is halved one way only where B's highest terms are so many times larger that way than the other.
-constexpr double kOneWay = 4;
+/// Of what dividing a patch has changed within a part, the share that is taken for the part's own error. Where B is
+/// smooth it is a fifteenth, where its derivative jumps about a quarter.
+constexpr double kShareOfChange = 0.25;
 /// Of the error wanted, what the solver may leave and what the polynomials' corrections may still change.
 constexpr double kSolverShare = 1e-4;
 constexpr int kMostCorrections = 50;
@@ -260,20 +262,59 @@ class ReferenceSolver {
   void measure_mesh_error(std::span<const double> Y, std::span<const double> Y_lower) {
     const PatchMesh& mesh = refined_.mesh();
     const std::uint32_t degree = result_.record.degree;
+    PatchPolynomials polynomials(mesh, degree);
+    std::vector<double> coefficients = polynomials.fit(Y, 1);
+    measure_changes(Y, polynomials, coefficients);
     share_ = squared_distances(mesh, Y, degree, Y_lower, degree - 1);
-    const PatchPolynomials polynomials(mesh, degree);
-    coefficients_ = polynomials.fit(Y, 1);
     double reference = 0;
     std::vector<double> apart;
     for (std::uint32_t e = 0; e < Y.size(); ++e) {
-      const double left = Y[e] - polynomials.mean(e, coefficients_, 1, 0), area = mesh.elements[e].area;
+      const double left = Y[e] - polynomials.mean(e, coefficients, 1, 0), area = mesh.elements[e].area;
       share_[mesh.elements[e].patch] += area * left * left;
       reference += area * Y[e] * Y[e];
       apart.push_back(Y[e] - Y_lower[e]);
     }
+    for (std::size_t p = 0; p < share_.size(); ++p) share_[p] += kShareOfChange * kShareOfChange * change_[p];
     const double all = std::accumulate(share_.begin(), share_.end(), 0.0);
     result_.record.error.mesh = all > 0 ? std::sqrt(all / reference) : 0;
     level_.means_error = relative_norm(apart, Y);
+    mesh_before_ = mesh;
+    coefficients_before_ = std::move(coefficients);
+  }
+
+  /// Over each new patch, ∫ (u − u of the patch it is a part of)²; on the first level, where there is none, ∫ (u − its
+  /// fit of first degree)².
+  void measure_changes(std::span<const double> Y, const PatchPolynomials& polynomials,
+                       std::span<const double> coefficients) {
+    const PatchMesh& mesh = refined_.mesh();
+    const std::size_t terms = polynomials.terms();
+    if (origins_.empty()) {
+      change_ = squared_distances(mesh, Y, polynomials.degree(), Y, 1);
+      return;
+    }
+    const PatchPolynomials before(mesh_before_, polynomials.degree());
+    std::vector<double> change(mesh.patches.size()), term(terms), term_before(terms);
+    std::vector<WeightedPoint> points;
+    for (std::uint32_t p = 0; p < change.size(); ++p) {
+      const Origin& origin = origins_[p];
+      if (origin.kept) {
+        change[p] = change_[origin.patch];
+        continue;
+      }
+      for (const AreaCell& cell : cells_of(mesh.loop(mesh.pieces_of(mesh.patches[p]).front()))) {
+        gauss_points(cell, 4, points);
+        for (const WeightedPoint& x : points) {
+          polynomials.terms_at(p, x.point, term);
+          before.terms_at(origin.patch, x.point, term_before);
+          double apart = 0;
+          for (std::size_t t = 0; t < terms; ++t)
+            apart +=
+                term[t] * coefficients[p * terms + t] - term_before[t] * coefficients_before_[origin.patch * terms + t];
+          change[p] += x.weight * apart * apart;
+        }
+      }
+    }
+    change_ = std::move(change);
   }
 
   void refine() {
@@ -282,32 +323,30 @@ class ReferenceSolver {
     std::ranges::stable_sort(order, std::greater(), [&](std::uint32_t p) { return share_[p]; });
     const double all = std::accumulate(share_.begin(), share_.end(), 0.0);
     double divided = 0;
-    std::vector<RefinedMesh::Division> divisions;
-    const std::size_t terms = coefficients_.size() / share_.size(), degree = result_.record.degree;
+    std::vector<std::uint32_t> patches;
     for (const std::uint32_t p : order) {
-      const double along = std::fabs(coefficients_[(p + 1) * terms - 1 - degree]);
-      const double across = std::fabs(coefficients_[(p + 1) * terms - 1]);
-      divisions.push_back({p, along * kOneWay > across, across * kOneWay > along});
+      patches.push_back(p);
       divided += share_[p];
       if (divided >= kShareDivided * all) break;
     }
-    std::ranges::sort(divisions, {}, &RefinedMesh::Division::patch);
-    const PatchMesh before = refined_.mesh();
-    const std::vector<std::uint32_t> old = refined_.split(divisions);
+    std::ranges::sort(patches);
+    origins_ = refined_.split(patches);
     const PatchMesh& mesh = refined_.mesh();
-    std::vector<std::uint32_t> new_number(before.elements.size(), kNone);
+    std::vector<std::uint32_t> new_number(mesh_before_.elements.size(), kNone);
     new_elements_ = 0;
-    for (std::uint32_t p = 0; p < old.size(); ++p) {
+    for (std::uint32_t p = 0; p < origins_.size(); ++p) {
       const Patch& patch = mesh.patches[p];
-      if (old[p] == kNone) {
+      if (!origins_[p].kept) {
         new_elements_ += patch.element_count;
         continue;
       }
       for (std::uint32_t e = 0; e < patch.element_count; ++e)
-        new_number[before.patches[old[p]].element_first + e] = patch.element_first + e;
+        new_number[mesh_before_.patches[origins_[p].patch].element_first + e] = patch.element_first + e;
     }
     rows_ = kept_rows(rows_, new_number);
   }
+
+  using Origin = RefinedMesh::Origin;
 
   const Scene& scene_;
   const ReferenceOptions& options_;
@@ -318,9 +357,12 @@ class ReferenceSolver {
   std::uint32_t new_elements_ = 0;      // those come first
   PairRows rows_;
   ReferenceLevel level_;
-  std::vector<double> shooting_;      // of the solution, by element and band
-  std::vector<double> share_;         // of the mesh's squared error, by patch
-  std::vector<double> coefficients_;  // of luminance
+  std::vector<double> shooting_;  // of the solution, by element and band
+  std::vector<double> share_;     // of the mesh's squared error, by patch
+  std::vector<double> change_;    // by patch: what dividing the patch it comes from has changed in it, squared
+  PatchMesh mesh_before_;         // that of the solution there is
+  std::vector<double> coefficients_before_;  // of its luminance
+  std::vector<Origin> origins_;              // of the patches, in that mesh; empty on the first level
   double solver_error_ = 0;
   ReferenceSolution result_;
 };

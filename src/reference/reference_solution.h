@@ -63,10 +63,11 @@ PairOptions pair_options_for(double error);
 /// elements, with which elements shoot better than constants do (PatchPolynomials::shooting_values): of a smooth B the
 /// error falls with the fourth power of the patches' size.
 ///
-/// Its error in the norm of equation 7 (comparison.h), as a function of the point, is estimated as its distance to the
-/// same with quadratic polynomials, and what cubic ones leave over of the elements' means. That
-/// holds where the cubic solution is the better one. To this comes what errors of form factors can do, patch by patch:
-/// the solution of the same system that their errors emit.
+/// Its error in the norm of equation 7 (comparison.h), as a function of the point, is estimated patch by patch, in
+/// squares: its distance to the same with quadratic polynomials; what cubic ones leave over of the elements' means; and
+/// a quarter of what dividing it has changed, as the other two are blind to terms of fourth degree where B is symmetric
+/// about a patch's middle. To this comes what errors of form factors can do, element by element: the solution of the
+/// same system that their errors emit.
 ///
 /// Patches with the largest share of the error are divided (RefinedMesh), along shadow boundaries first, until the
 /// error is what is wanted; the other patches keep their form factors. All of it depends on scene and options only:

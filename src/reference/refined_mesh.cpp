@@ -56,34 +56,15 @@ std::vector<AreaCell> cut_along_lines(const AreaCell& cell, std::span<const Visu
   return along == nullptr ? std::vector<AreaCell>{} : cut(cell, along->plane);
 }
 
-/// Halves of a quadrilateral that are half as long along its first edge (edge 0), or across it (edge 1).
-std::vector<AreaCell> halves(const AreaCell& cell, std::size_t edge) {
-  const auto middle = [](const Vec3& a, const Vec3& b) { return a + 0.5 * (b - a); };
-  const Vec3 &a = cell.corner[edge], &b = cell.corner[edge + 1], &c = cell.corner[(edge + 2) % 4],
-             &d = cell.corner[(edge + 3) % 4];
-  const Vec3 m = middle(a, b), n = middle(d, c);
-  if (edge == 0) return {{{a, m, n, d}, 4}, {{m, b, c, n}, 4}};
-  return {{{d, a, m, n}, 4}, {{n, m, b, c}, 4}};  // so that the first edge of the parts is that of the cell
-}
-
-std::vector<AreaCell> divided(const AreaCell& cell, bool along, bool across) {
+std::vector<AreaCell> quarters(const AreaCell& cell) {
   std::vector<AreaCell> parts;
-  if (cell.corners == 3) {
-    const auto [one, other] = bisect(cell);
-    for (const AreaCell& half : {one, other}) {
-      const auto [first, second] = bisect(half);
-      parts.push_back(first);
-      parts.push_back(second);
-    }
-    return parts;
+  const auto [one, other] = bisect(cell);
+  for (const AreaCell& half : {one, other}) {
+    const auto [first, second] = bisect(half);
+    parts.push_back(first);
+    parts.push_back(second);
   }
-  parts = along ? halves(cell, 0) : std::vector{cell};
-  if (!across) return parts;
-  std::vector<AreaCell> quarters;
-  for (const AreaCell& part : parts) {
-    for (const AreaCell& half : halves(part, 1)) quarters.push_back(half);
-  }
-  return quarters;
+  return parts;
 }
 
 /// The grid of a quadrilateral divides opposite edges evenly; a triangle's has rows along its first edge, where every
@@ -152,7 +133,7 @@ RefinedMesh::RefinedMesh(const Scene& scene, const PolygonSoup& soup, double pat
   make_mesh();
 }
 
-std::vector<AreaCell> RefinedMesh::parts_of(const Cell& cell, const Division& how) const {
+std::vector<AreaCell> RefinedMesh::parts_of(const Cell& cell) const {
   const std::vector<VisualEvent> lines = shadow_boundaries(*soup_, {cell.facet, cell.shape.loop()}, emitters_);
   std::vector<AreaCell> parts{cell.shape};
   for (std::size_t k = 0; k < parts.size() && parts.size() < kParts;) {
@@ -164,26 +145,27 @@ std::vector<AreaCell> RefinedMesh::parts_of(const Cell& cell, const Division& ho
     parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(k));
     parts.insert(parts.end(), some.begin(), some.end());
   }
-  return parts.size() > 1 ? parts : divided(cell.shape, how.along || !how.across, how.across);
+  return parts.size() > 1 ? parts : quarters(cell.shape);
 }
 
-std::vector<std::uint32_t> RefinedMesh::split(std::span<const Division> divisions) {
+std::vector<RefinedMesh::Origin> RefinedMesh::split(std::span<const std::uint32_t> patches) {
   std::vector<Cell> cells;
-  std::vector<bool> is_divided(cells_.size());
-  for (const Division& how : divisions) {
-    const Cell& cell = cells_.at(how.patch);
-    is_divided[how.patch] = true;
-    for (const AreaCell& shape : parts_of(cell, how)) cells.push_back({cell.surface, cell.facet, shape});
+  std::vector<Origin> origins;
+  for (const std::uint32_t p : patches) {
+    const Cell& cell = cells_.at(p);
+    for (const AreaCell& shape : parts_of(cell)) {
+      cells.push_back({cell.surface, cell.facet, shape});
+      origins.push_back({p, false});
+    }
   }
-  std::vector<std::uint32_t> old(cells.size(), kNone);
   for (std::uint32_t p = 0; p < cells_.size(); ++p) {
-    if (is_divided[p]) continue;
+    if (std::ranges::binary_search(patches, p)) continue;
     cells.push_back(cells_[p]);
-    old.push_back(p);
+    origins.push_back({p, true});
   }
   cells_ = std::move(cells);
   make_mesh();
-  return old;
+  return origins;
 }
 
 void RefinedMesh::make_mesh() {

@@ -16,10 +16,10 @@ namespace exitance {
 /// edge. Surfaces start as make_patch_mesh cuts them; every piece is a patch.
 class RefinedMesh {
  public:
-  /// A patch to divide. Its first edge runs along it; a triangle is divided both ways whatever is asked.
-  struct Division {
+  /// Where a patch comes from: of the mesh before, the patch that it was or was a part of.
+  struct Origin {
     std::uint32_t patch = 0;
-    bool along = true, across = true;  ///< whether halves are to be shorter along the first edge, across it, or both
+    bool kept = false;  ///< it was that patch
   };
 
   /// The scene and its soup must outlive it. elements_per_edge ≥ 1; throws what make_patch_mesh does.
@@ -28,21 +28,20 @@ class RefinedMesh {
   /// Valid until the next split().
   const PatchMesh& mesh() const { return mesh_; }
 
-  /// Divides the named patches (ascending): along shadow boundaries of the emitting surfaces where they
-  /// cross it (visual_events.h: lines where a vertex and an edge come into line before an emitter, where other
-  /// surfaces touch, and where an emitter comes into view), the one first that divides most evenly, until there are
-  /// four parts; otherwise into halves or quarters as asked. Lines that cut off less than a tenth are left for when
-  /// they lie better. Patches that result come first in the new mesh, the others follow in their order.
-  /// Returns for each patch of the new mesh its number in the old one, kNone for those that are new: elements of a
-  /// patch that stays are the same, bit for bit, in the same order.
-  std::vector<std::uint32_t> split(std::span<const Division> divisions);
+  /// Divides the named patches (ascending): along shadow boundaries of the emitting surfaces where they cross it
+  /// (visual_events.h: lines where a vertex and an edge come into line before an emitter, where other surfaces touch,
+  /// and where an emitter comes into view), the one first that divides most evenly, until there are four parts;
+  /// otherwise into four across the longer sides. Lines that cut off less than a tenth are left for when they lie
+  /// better. Parts come first in the new mesh, the other patches follow in their order, with elements that are the
+  /// same, bit for bit, in the same order. Returns where each patch of the new mesh comes from.
+  std::vector<Origin> split(std::span<const std::uint32_t> patches);
 
  private:
   struct Cell {
     std::uint32_t surface = 0, facet = 0;
     AreaCell shape;
   };
-  std::vector<AreaCell> parts_of(const Cell& cell, const Division& how) const;
+  std::vector<AreaCell> parts_of(const Cell& cell) const;
   void make_mesh();
   void add_elements(const Cell& cell);
 
