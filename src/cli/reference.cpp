@@ -111,7 +111,6 @@ class Reference {
                                           : available_memory_bytes();
     options_.stop = [this, start] { return interrupted() || (time_limit_ && seconds_since(start) > *time_limit_); };
     const ReferenceSolution solution = solve(scene, soup, static_cast<unsigned>(threads));
-    if (solution.end == ReferenceEnd::reached) fs::remove_all(options_.checkpoint);
     print(solution, seconds_since(start));
     end(solution);
   }

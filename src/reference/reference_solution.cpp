@@ -8,6 +8,7 @@
 #include <deque>
 #include <numeric>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "src/form_factor/area_cell.h"
@@ -114,7 +115,10 @@ class ReferenceSolver {
       if (!add_form_factors()) return std::move(result_);
       solve_level();
       if (saved) saved(result_);
-      if (result_.record.error.total <= options_.error) return std::move(result_);
+      if (result_.record.error.total <= options_.error) {
+        remove_checkpoints();
+        return std::move(result_);
+      }
       refine();
     }
   }
@@ -138,7 +142,8 @@ class ReferenceSolver {
                             checkpoints_.empty() ? nullptr : &checkpoints_.back());
     if (!run.complete) {
       return ended(ReferenceEnd::stopped,
-                   fmt::format("stopped after {} of {} rows of the first level", run.finished, new_elements_));
+                   fmt::format("stopped after {} of {} rows of the first level{}", run.finished, new_elements_,
+                               checkpoints_.empty() ? "" : "; they are kept, and the same command goes on"));
     }
     level_ = {};
     level_.patches = static_cast<std::uint32_t>(mesh.patches.size());
@@ -161,6 +166,12 @@ class ReferenceSolver {
         "patches need less",
         refined_.mesh().elements.size(), static_cast<double>(result_.bytes_needed) * 0x1p-30,
         static_cast<double>(options_.memory_limit) * 0x1p-30));
+  }
+
+  void remove_checkpoints() {
+    for (Checkpoint& checkpoint : checkpoints_) checkpoint.remove();
+    std::error_code ignored;
+    if (!checkpoints_.empty()) std::filesystem::remove(options_.checkpoint, ignored);
   }
 
   void report(double fraction) const {

@@ -21,7 +21,7 @@ struct ReferenceOptions {
   double patch_size = 0;  ///< of the first mesh: longest edge of a patch [m]; 0: surfaces as they are
   std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  ///< for form factors [bytes]
   /// Folder in which each level's rows of form factors are kept as they are finished, and found when the same work is
-  /// begun again; empty: none. It is made, and left to the caller to remove.
+  /// begun again; empty: none. It is made, and removed when the error is reached and the solution was given to `saved`.
   std::filesystem::path checkpoint = {};
   std::string key = {};        ///< what else the rows depend on: version, compiler
   double block_seconds = 2;    ///< about how much work is put into a block of rows, after which it is saved
