@@ -61,7 +61,7 @@ PairOptions pair_options_for(double error);
 /// Elements receive and shoot: form factors are those of all pairs of elements, averaged over both by integration
 /// (pair_form_factor.h), and gathering solves for the means of B. B itself is a cubic polynomial on every patch of 16
 /// elements, with which elements shoot better than constants do (PatchPolynomials::shooting_values): of a smooth B the
-/// error falls with the fourth power of the patches' size.
+/// error falls with the fourth power of the patches' size, and its estimate with the third.
 ///
 /// Its error in the norm of equation 7 (comparison.h), as a function of the point, is estimated patch by patch, in
 /// squares: its distance to the same with quadratic polynomials; what cubic ones leave over of the elements' means; and
