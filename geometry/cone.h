@@ -164,6 +164,7 @@ struct EdgePlane {
 
 template <class Real>
 Real square_root(const Real& v) {
+  using std::sqrt;
   return sqrt(v);
 }
 
@@ -196,10 +197,29 @@ template <class Real, class N>
   return plane;
 }
 
-/// Sets the cone of a polygon of input points, a side from each corner to the next; it runs so that
-/// sign · det(c − x, d − x, v − x) is positive inside.
+/// Of corners that stand for where they drop onto the source's plane (ViewFrame).
+struct Drop {
+  const ViewFrame& frame;
+  std::span<const double> height;  ///< of each corner, a bound of how far it drops
+};
+
+/// How far a corner drops along the frame's axis, S(v) / N; 0 where none does.
 template <class Real>
-void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop, int sign, bool on_source) {
+Real drop_of(const Drop* drop, const Vec3& v) {
+  if (drop == nullptr) return Real(0);
+  const PlanePoints& S = drop->frame.S;
+  const Vec<Real> n = cross(difference<Real>(*S.b, *S.a), difference<Real>(*S.c, *S.a));
+  return dot(n, difference<Real>(v, *S.a)) / (drop->frame.axis == 0 ? n.x : drop->frame.axis == 1 ? n.y : n.z);
+}
+
+/// Sets the cone of a polygon of input points, or of what these stand for, a side from each corner to the next; it runs
+/// so that sign · det(c − x, d − x, v − x) is positive inside.
+///
+/// In double precision corners that drop are left where they are, and what they drop is taken as their error. The sides
+/// then err by |(w + δ) × (w' + δ') − w × w'| ≤ |δ||w'| + |δ'||w| + |δ||δ'|.
+template <class Real>
+void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop, int sign,
+              const Drop* drop = nullptr) {
   const std::size_t n = loop.size();
   Corners<Real>& corners = cone.corners;
   corners.resize(n);
@@ -219,13 +239,30 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
       e_x[k] = Real(q.x) - Real(p.x);
       e_y[k] = Real(q.y) - Real(p.y);
       e_z[k] = Real(q.z) - Real(p.z);
-      corners.exact(first + k) = {ViewPoint::Kind::vertex, on_source, 0, &p, nullptr};
+      corners.exact(first + k) = {ViewPoint::Kind::vertex, drop != nullptr, 0, &p, nullptr};
+    }
+    if constexpr (!std::is_same_v<Real, double>) {
+      for (std::size_t k = 0; k < used && drop != nullptr; ++k) {
+        auto& from = drop->frame.axis == 0 ? from_x : drop->frame.axis == 1 ? from_y : from_z;
+        auto& to = drop->frame.axis == 0 ? to_x : drop->frame.axis == 1 ? to_y : to_z;
+        auto& e = drop->frame.axis == 0 ? e_x : drop->frame.axis == 1 ? e_y : e_z;
+        const Real at_from = drop_of<Real>(drop, *loop[first + k]),
+                   at_to = drop_of<Real>(drop, *loop[first + k + 1 < n ? first + k + 1 : 0]);
+        from[k] -= at_from;
+        to[k] -= at_to;
+        e[k] -= at_to - at_from;
+      }
     }
     auto& c = corners.block(first / kLanes);
     c.x = from_x;
     c.y = from_y;
     c.z = from_z;
     c.error.fill(Real(0));
+    for (std::size_t k = 0; k < used && drop != nullptr; ++k) {
+      c.error[k] = std::is_same_v<Real, double>
+                       ? Real(drop->height[first + k])
+                       : Real(4 * roundoff<Real>() * norm(Vec<Real>{from_x[k], from_y[k], from_z[k]}));
+    }
     if constexpr (std::is_same_v<Real, double>) {
       const auto vectors = [](const auto& vx, const auto& vy, const auto& vz) {
         return Vec<Doubles>{load(vx.data()), load(vy.data()), load(vz.data())};
@@ -261,12 +298,18 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
       side.sweep = sweep[k];
       side.from = static_cast<std::uint32_t>(first + k);
       side.to = static_cast<std::uint32_t>(first + k + 1 < n ? first + k + 1 : 0);
-      side.exact = {ViewPlane::Kind::edge, sign, loop[side.from], loop[side.to], nullptr};
+      side.exact = {ViewPlane::Kind::edge, sign, loop[side.from], loop[side.to], nullptr, drop != nullptr};
       side.stretch = {};
       side.across = 0xffffffffu;
       if constexpr (std::is_same_v<Real, double>) {
+        if (drop != nullptr) {
+          const double a = drop->height[side.from], b = drop->height[side.to];
+          const double to_length = norm(Vec<double>{to_x[k], to_y[k], to_z[k]});
+          side.error += 1.01 * (a * to_length + b * c.length[k] + a * b);
+        }
         if (side.error > 0x1p-44 * side.length) {  // the edge's line passes near x
-          const Vec3 m = sign * exact_cross(x, *side.exact.c, *side.exact.d);
+          const Vec3 m =
+              sign * (drop ? exact_cross(drop->frame, side.exact) : exact_cross(x, *side.exact.c, *side.exact.d));
           side.m = {m.x, m.y, m.z};
           side.length = norm(side.m);
           side.error = 8 * kRoundoff * side.length;  // 2^-50 of each component, and u in each of w
@@ -352,6 +395,7 @@ class Row {
     for_each_byte(unsure, [&](std::size_t k) {
       const ViewPoint& corner = corners.exact(b * kLanes + k);
       const bool own_vertex = side.exact.kind == ViewPlane::Kind::edge && corner.kind == ViewPoint::Kind::vertex &&
+                              side.exact.dropped == corner.dropped &&
                               (*side.exact.c == *corner.a || *side.exact.d == *corner.a);
       const auto s = own_vertex ? Signed<Real>{} : refined_value_at(side, corner, frame, counts);
       row.value[k] = s.value;
@@ -415,9 +459,10 @@ void clip(Cone<Real>& cone, const std::vector<Signed<Real>>& weight, ViewPoint::
   const auto crossing = [&](const ConeSide<Real>& side, const Stretch<Real>& s, const Real& t) {
     const Vec<Real> a = corners.w(side.from), e = corners.w(side.to) - a;
     const Real dt = s.lo_error > s.hi_error ? s.lo_error : s.hi_error;
-    const Real error = norm(e) * dt + 8 * roundoff<Real>() * (corners.length(side.from) + corners.length(side.to));
+    const Real error = norm(e) * dt + 8 * roundoff<Real>() * (corners.length(side.from) + corners.length(side.to)) +
+                       corners.error(side.from) + corners.error(side.to);
     const ViewPoint p = corners.exact(side.from), q = corners.exact(side.to);
-    corners.add(a + t * e, error, {kind, p.on_source, weight[side.from].sign, p.a, q.a});
+    corners.add(a + t * e, error, {kind, p.dropped, weight[side.from].sign, p.a, q.a});
     return static_cast<std::uint32_t>(corners.size() - 1);
   };
   const auto close = [&](std::uint32_t from, std::uint32_t to) {

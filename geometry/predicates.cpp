@@ -15,6 +15,7 @@ template <class NT>
 struct Difference {
   NT x, y, z;
   Difference(const Vec3& p, const Vec3& q) : x(NT(p.x) - NT(q.x)), y(NT(p.y) - NT(q.y)), z(NT(p.z) - NT(q.z)) {}
+  NT& operator[](int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
 };
 
 template <class NT>
@@ -38,38 +39,77 @@ NT plane_value(const PlanePoints& plane, const Vec3& v) {
   return orientation_value<NT>(*plane.a, *plane.b, *plane.c, v);
 }
 
+/// |N|, by which a dropped point's difference is scaled.
 template <class NT>
-NT functional_at_vertex(const ViewFrame& frame, const ViewPlane& plane, const Vec3& v, bool on_source) {
+NT drop_scale(const ViewFrame& frame) {
+  const Difference<NT> p(*frame.S.b, *frame.S.a), q(*frame.S.c, *frame.S.a);
+  const NT N = frame.axis == 0   ? NT(p.y * q.z - p.z * q.y)
+               : frame.axis == 1 ? NT(p.z * q.x - p.x * q.z)
+                                 : NT(p.x * q.y - p.y * q.x);
+  return frame.axis_sign > 0 ? N : NT(0) - N;
+}
+
+/// v − p, or |N| times that where v is dropped.
+template <class NT>
+Difference<NT> difference(const ViewFrame& frame, const Vec3& v, const Vec3& p, bool dropped) {
+  Difference<NT> w(v, p);
+  if (!dropped) return w;
+  const NT N = drop_scale<NT>(frame), S = plane_value<NT>(frame.S, v);
+  w.x = N * w.x;
+  w.y = N * w.y;
+  w.z = N * w.z;
+  NT& along = w[frame.axis];
+  along = frame.axis_sign > 0 ? NT(along - S) : NT(along + S);
+  return w;
+}
+
+/// By what functional_at_vertex is scaled, positive.
+template <class NT>
+NT functional_scale(const ViewFrame& frame, const ViewPlane& plane, bool dropped) {
+  NT scale(1);
+  if (!dropped && !plane.dropped) return scale;
+  const NT N = drop_scale<NT>(frame);
+  if (dropped) scale = N;
+  if (plane.dropped) scale = scale * N * N;
+  return scale;
+}
+
+template <class NT>
+NT functional_at_vertex(const ViewFrame& frame, const ViewPlane& plane, const Vec3& v, bool dropped) {
   switch (plane.kind) {
     case ViewPlane::Kind::edge:
-      return determinant(Difference<NT>(*plane.c, frame.x), Difference<NT>(*plane.d, frame.x),
-                         Difference<NT>(v, frame.x));
-    case ViewPlane::Kind::horizon:
-      return horizon_value<NT>(frame.x, frame.normal, v);
+      return determinant(difference<NT>(frame, *plane.c, frame.x, plane.dropped),
+                         difference<NT>(frame, *plane.d, frame.x, plane.dropped),
+                         difference<NT>(frame, v, frame.x, dropped));
+    case ViewPlane::Kind::horizon: {
+      const Difference<NT> w = difference<NT>(frame, v, frame.x, dropped);
+      return NT(frame.normal.x) * w.x + NT(frame.normal.y) * w.y + NT(frame.normal.z) * w.z;
+    }
     default: {
-      const NT first = plane_value<NT>(frame.S, frame.x) * plane_value<NT>(*plane.T, v);
-      return on_source ? first : first - plane_value<NT>(*plane.T, frame.x) * plane_value<NT>(frame.S, v);
+      const PlanePoints& T = *plane.T;
+      const NT first =
+          plane_value<NT>(frame.S, frame.x) *
+          determinant(Difference<NT>(*T.b, *T.a), Difference<NT>(*T.c, *T.a), difference<NT>(frame, v, *T.a, dropped));
+      return dropped ? first : first - plane_value<NT>(T, frame.x) * plane_value<NT>(frame.S, v);
     }
   }
 }
 
 template <class NT>
 NT weight(const ViewFrame& frame, const ViewPoint& point, const Vec3& v) {
-  return point.kind == ViewPoint::Kind::at_horizon ? horizon_value<NT>(frame.x, frame.normal, v)
-                                                   : plane_value<NT>(frame.S, v);
+  if (point.kind == ViewPoint::Kind::at_source_plane) return plane_value<NT>(frame.S, v);
+  return functional_at_vertex<NT>(frame, {ViewPlane::Kind::horizon}, v, point.dropped);
 }
 
 /// The functional at the point times `span`, which is positive.
 template <class NT>
 NT functional(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& point, NT& span) {
-  if (point.kind == ViewPoint::Kind::vertex) {
-    span = NT(1);
-    return functional_at_vertex<NT>(frame, plane, *point.a, point.on_source);
-  }
+  span = functional_scale<NT>(frame, plane, point.dropped);
+  if (point.kind == ViewPoint::Kind::vertex) return functional_at_vertex<NT>(frame, plane, *point.a, point.dropped);
   const NT a = weight<NT>(frame, point, *point.a), b = weight<NT>(frame, point, *point.b);
-  const NT value = a * functional_at_vertex<NT>(frame, plane, *point.b, point.on_source) -
-                   b * functional_at_vertex<NT>(frame, plane, *point.a, point.on_source);
-  span = point.sign_at_a > 0 ? a - b : b - a;
+  const NT value = a * functional_at_vertex<NT>(frame, plane, *point.b, point.dropped) -
+                   b * functional_at_vertex<NT>(frame, plane, *point.a, point.dropped);
+  span = span * (point.sign_at_a > 0 ? NT(a - b) : NT(b - a));
   return point.sign_at_a > 0 ? value : NT(0) - value;
 }
 
@@ -109,6 +149,7 @@ std::optional<int> certain_sign(double value, double bound) {
 /// or the edge and the vertex on one line along an axis. In buildings nearly all zeros are of these kinds.
 bool is_zero_at_sight(const Vec3& x, const ViewPlane& plane, const ViewPoint& point) {
   if (plane.kind != ViewPlane::Kind::edge || point.kind != ViewPoint::Kind::vertex) return false;
+  if (plane.dropped || point.dropped) return false;
   const Vec3 &c = *plane.c, &d = *plane.d, &v = *point.a;
   const bool x_same = c.x == d.x && c.x == v.x, y_same = c.y == d.y && c.y == v.y, z_same = c.z == d.z && c.z == v.z;
   return (x_same && y_same) || (y_same && z_same) || (z_same && x_same) || (x_same && x.x == v.x) ||
@@ -198,6 +239,14 @@ Vec3 exact_cross(const Vec3& x, const Vec3& c, const Vec3& d) {
   const Difference<Exact> p(c, x), q(d, x);
   return {(p.y * q.z - p.z * q.y).to_double(), (p.z * q.x - p.x * q.z).to_double(),
           (p.x * q.y - p.y * q.x).to_double()};
+}
+
+Vec3 exact_cross(const ViewFrame& frame, const ViewPlane& plane) {
+  const auto p = difference<Exact>(frame, *plane.c, frame.x, true);
+  const auto q = difference<Exact>(frame, *plane.d, frame.x, true);
+  const double N = drop_scale<Exact>(frame).to_double(), scale = 1 / (N * N);
+  return {scale * (p.y * q.z - p.z * q.y).to_double(), scale * (p.z * q.x - p.x * q.z).to_double(),
+          scale * (p.x * q.y - p.y * q.x).to_double()};
 }
 
 }  // namespace exitance

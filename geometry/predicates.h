@@ -56,6 +56,7 @@ struct ViewPlane {
   int sign = 1;                           ///< factor that makes the functional positive inside
   const Vec3 *c = nullptr, *d = nullptr;  ///< of an edge
   const PlanePoints* T = nullptr;         ///< of a cut
+  bool dropped = false;                   ///< c and d stand for where they drop onto S
 };
 
 /// A point: an input vertex a, or the point in which the edge ab crosses the horizon or the source's plane S,
@@ -63,15 +64,19 @@ struct ViewPlane {
 struct ViewPoint {
   enum class Kind : std::uint8_t { vertex, at_horizon, at_source_plane };
   Kind kind = Kind::vertex;
-  bool on_source = false;  ///< S is 0 at a and b by identity
-  int sign_at_a = 0;       ///< of w(a), for crossings
+  bool dropped = false;  ///< a and b stand for where they drop onto S
+  int sign_at_a = 0;     ///< of w(a), for crossings
   const Vec3 *a = nullptr, *b = nullptr;
 };
 
-/// What all planes and points of one question have in common.
+/// What all planes and points of one question have in common. A rounded point v that lies in S by identity stands for
+/// the point exactly in S where it drops along an axis, v − S(v) / N e: e the axis's unit vector, N that component of
+/// the normal of S, which is not 0.
 struct ViewFrame {
   Vec3 x, normal;
   PlanePoints S;
+  int axis = 0;       ///< of e
+  int axis_sign = 1;  ///< of N
 };
 
 /// A functional's value, nearly as exact as a double can hold it, with its exact sign.
@@ -90,5 +95,8 @@ ExactValue exact_plane_value(const PlanePoints& plane, const Vec3& v);
 
 /// (c − x) × (d − x), each component correctly rounded up to 2^-50.
 Vec3 exact_cross(const Vec3& x, const Vec3& c, const Vec3& d);
+
+/// The same of an edge's plane whose points drop onto S.
+Vec3 exact_cross(const ViewFrame& frame, const ViewPlane& plane);
 
 }  // namespace exitance

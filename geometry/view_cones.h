@@ -46,7 +46,7 @@ class ViewCones {
     const auto loop = soup_.corners(soup_.facets()[facet]);
     loop_.clear();
     for (const Corner& c : loop) loop_.push_back(&c.at);
-    set(cone, loop_, -view_.facing(facet), false);
+    set(cone, loop_, -view_.facing(facet));
     find_horizon(cone.corners);
     for (std::size_t k = 0; k < loop.size(); ++k) cone.sides[k].across = loop[k].neighbour;
   }
@@ -61,8 +61,8 @@ class ViewCones {
 
   /// Of corners that run counter-clockwise seen from the front: seen from there, det(c − x, d − x, v − x) is negative
   /// inside, so that sign is −1 where x is in front.
-  void set(Cone<Real>& cone, PointLoop loop, int sign, bool on_source) {
-    set_cone(cone, view_.receiver().point, loop, sign, on_source);
+  void set(Cone<Real>& cone, PointLoop loop, int sign, const Drop* drop = nullptr) {
+    set_cone(cone, view_.receiver().point, loop, sign, drop);
   }
 
  private:
@@ -95,7 +95,7 @@ class ViewCones {
     }
     loop_.clear();
     for (const auto& edge : ring_) loop_.push_back(&soup_.vertices()[edge.first]);
-    set(cone, loop_, -1, false);
+    set(cone, loop_, -1);
     find_horizon(cone.corners);
     drop_below_horizon(cone);
   }

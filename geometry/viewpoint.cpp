@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <stdexcept>
 
 #include "geometry/extended.h"
@@ -17,15 +18,16 @@ struct Viewpoint::State {
     std::uint32_t facet = kNone;
     bool blocked = false;
     std::vector<Occluder> occluders;
+    std::vector<std::uint32_t> facets;  // that will_add_only
   };
 
-  explicit State(const PolygonSoup& s) : soup(s), view(s), region(view), fine(view) {}
+  explicit State(const PolygonSoup& s) : soup(s), view(s), region(view), fine(view), finest(view) {}
 
   template <class Real>
   VisibleRegion<Real>& region_of();
   template <class Real>
   bool set_source(std::uint32_t facet, int source_facing) {
-    return region_of<Real>().set_source(facet, source_facing, corners, horizons);
+    return region_of<Real>().set_source(facet, source_facing, corners, horizons, dropped ? &*dropped : nullptr);
   }
   bool add_candidate(const Occluder& occluder);
   bool hidden_by_recent();
@@ -33,6 +35,8 @@ struct Viewpoint::State {
   bool add_flush_faces(std::uint32_t facet);
   bool add_items(std::span<const std::uint32_t> items);
   bool prepare(const Source& source, int& source_facing);
+  void find_drop(const Source& source);
+  int horizon_of_piece(std::size_t corner);
   bool put_occluders(const Source& source, int source_facing);
   Candidates& candidates_of(std::uint32_t facet) { return recent[facet % recent.size()]; }
   template <class Real>
@@ -40,6 +44,8 @@ struct Viewpoint::State {
   bool put_items(const Source& source, int source_facing, std::span<const std::uint32_t> items);
   template <class Real>
   PointFormFactor sum(PointFormFactor result);
+  template <class Real>
+  void sum_again(const Source& source, int source_facing, PointFormFactor& result);
   template <class Put>
   PointFormFactor answer(const Source& source, double tolerance, const Put& put);
 
@@ -48,11 +54,15 @@ struct Viewpoint::State {
   std::uint64_t extended = 0;
   double hidden_value = 0;  // of the last sum, when its own error hides it
   VisibleRegion<double> region;
-  VisibleRegion<Extended> fine;
+  VisibleRegion<long double> fine;
+  VisibleRegion<Extended> finest;
   std::array<Candidates, 4> recent;  // the facets of a polygon take turns
   std::vector<Occluder> blockers;    // of this view, the latest first
   std::vector<const Vec3*> corners;
   std::vector<int> horizons;
+  ViewFrame frame;  // of the source that is prepared, if it is a piece
+  std::vector<double> heights;
+  std::optional<Drop> dropped;  // if its corners lie in its plane up to rounding only
   std::vector<HalfSpace> half_spaces;
   std::vector<std::uint32_t> found;
 };
@@ -62,8 +72,12 @@ VisibleRegion<double>& Viewpoint::State::region_of() {
   return region;
 }
 template <>
-VisibleRegion<Extended>& Viewpoint::State::region_of() {
+VisibleRegion<long double>& Viewpoint::State::region_of() {
   return fine;
+}
+template <>
+VisibleRegion<Extended>& Viewpoint::State::region_of() {
+  return finest;
 }
 
 /// Adds an occluder to the current source; false when it hides all of it.
@@ -171,23 +185,61 @@ bool Viewpoint::State::prepare(const Source& source, int& source_facing) {
   if (source_facing < 0 && f.shell != kNone && view.outside(soup.shells()[f.shell])) return false;
   corners.clear();
   horizons.clear();
+  dropped.reset();
   if (source.loop.empty()) {
     for (const Corner& c : soup.corners(f)) {
       corners.push_back(&soup.vertices()[c.vertex]);
       horizons.push_back(view.horizon(c.vertex));
     }
   } else {
-    for (const Vec3& v : source.loop) {
-      corners.push_back(&v);
-      horizons.push_back(horizon_side(view.receiver().point, view.receiver().normal, v, view.counts()));
-    }
+    for (const Vec3& v : source.loop) corners.push_back(&v);
+    find_drop(source);
+    for (std::size_t k = 0; k < corners.size(); ++k) horizons.push_back(horizon_of_piece(k));
   }
   return std::any_of(horizons.begin(), horizons.end(), [](int s) { return s > 0; });
+}
+
+/// Finds how far the corners of a piece lie off its facet's plane. Along an axis they are dropped onto it exactly,
+/// which only arithmetic that is exact need do. Those of a facet so narrow that double precision does not know its
+/// normal are left where they are.
+void Viewpoint::State::find_drop(const Source& source) {
+  const Plane& plane = soup.facets()[source.facet].plane;
+  const auto in_plane_at_sight = [&](const Vec3& v) {
+    return plane.axis >= 0 && v[plane.axis] == plane.origin[plane.axis];
+  };
+  if (std::ranges::all_of(source.loop, in_plane_at_sight) || !(plane.normal_size > 4 * plane.normal_error)) return;
+  const Vec3& n = plane.normal;
+  frame = {view.receiver().point, view.receiver().normal, plane.points};
+  while (std::fabs(n[frame.axis]) < plane.normal_size) ++frame.axis;
+  frame.axis_sign = n[frame.axis] > 0 ? 1 : -1;
+  // n · (v − o): the normal is wrong by at most √3 normal_error; u of each component of the difference, three
+  // roundings.
+  heights.assign((source.loop.size() + kLanes - 1) / kLanes * kLanes, 0);
+  for (std::size_t k = 0; k < source.loop.size(); ++k) {
+    const Vec3 w = source.loop[k] - plane.origin;
+    heights[k] = (std::fabs(dot(n, w)) + (1.8 * plane.normal_error + 6 * kRoundoff * norm(n)) * norm(w)) /
+                 (plane.normal_size - plane.normal_error) * 1.01;
+  }
+  dropped.emplace(Drop{frame, heights});
+}
+
+/// On which side of the horizon a corner of the prepared piece lies.
+int Viewpoint::State::horizon_of_piece(std::size_t corner) {
+  const Receiver& r = view.receiver();
+  const Vec3& v = *corners[corner];
+  if (!dropped) return horizon_side(r.point, r.normal, v, view.counts());
+  const Vec3 w = v - r.point;
+  const double value = dot(r.normal, w), bound = norm(r.normal) * (5 * kRoundoff * norm(w) + 1.01 * heights[corner]);
+  if (value > bound || value < -bound) return value > 0 ? 1 : -1;
+  return exact_value_at(frame, {ViewPlane::Kind::horizon}, {ViewPoint::Kind::vertex, true, 0, &v, nullptr},
+                        view.counts())
+      .sign;
 }
 
 /// Adds the candidates to the current source; false when they hide all of it.
 template <class Real>
 bool Viewpoint::State::add_candidates(std::uint32_t facet) {
+  if (!candidates_of(facet).facets.empty()) region_of<Real>().will_add_only(candidates_of(facet).facets);
   for (const Occluder& occluder : candidates_of(facet).occluders) {
     if (region_of<Real>().add(occluder) == VisibleRegion<Real>::Effect::whole) return false;
   }
@@ -225,6 +277,7 @@ bool Viewpoint::State::put_occluders(const Source& source, int source_facing) {
     candidates.facet = source.facet;
     candidates.blocked = false;
     candidates.occluders.clear();
+    candidates.facets.clear();
     if (source.loop.empty()) {
       set_source<double>(source.facet, source_facing);
       return find_candidates(source.facet);
@@ -233,7 +286,13 @@ bool Viewpoint::State::put_occluders(const Source& source, int source_facing) {
     if (prepare({source.facet, {}}, facet_facing)) {
       set_source<double>(source.facet, facet_facing);
       find_candidates(source.facet);
+    } else {
+      candidates.blocked = true;
     }
+    for (const Occluder& o : candidates.occluders) {
+      if (o.shell == kNone) candidates.facets.push_back(o.facet);
+    }
+    std::ranges::sort(candidates.facets);
     prepare(source, source_facing);
   }
   set_source<double>(source.facet, source_facing);
@@ -245,7 +304,9 @@ bool Viewpoint::State::put_items(const Source& source, int source_facing, std::s
   Candidates& candidates = candidates_of(source.facet);
   candidates.facet = kNone;  // what is kept here holds for this piece only
   candidates.occluders.clear();
+  candidates.facets.assign(items.begin(), items.end());
   set_source<double>(source.facet, source_facing);
+  region.will_add_only(items);
   return add_flush_faces(source.facet) && add_items(items);
 }
 
@@ -262,14 +323,23 @@ PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance,
     result.visibility = Visibility::blocked;
     return result;
   }
-  const PointFormFactor plain = sum<double>(result);
+  result = sum<double>(result);
   // All values that are given as 0 err the same way: they must not add up.
-  if (plain.error <= tolerance && hidden_value <= tolerance / 1024) return plain;
+  const auto is_good = [&] { return result.error <= tolerance && hidden_value <= tolerance / 1024; };
+  if (is_good()) return result;
   ++extended;
-  set_source<Extended>(source.facet, source_facing);
-  add_candidates<Extended>(source.facet);
-  const PointFormFactor exact = sum<Extended>(result);
-  return exact.error < plain.error ? exact : plain;
+  sum_again<long double>(source, source_facing, result);
+  if (!is_good()) sum_again<Extended>(source, source_facing, result);
+  return result;
+}
+
+/// Sums once more with more digits, over the candidates that were found; keeps what was known better before.
+template <class Real>
+void Viewpoint::State::sum_again(const Source& source, int source_facing, PointFormFactor& result) {
+  set_source<Real>(source.facet, source_facing);
+  add_candidates<Real>(source.facet);
+  const PointFormFactor again = sum<Real>(result);
+  if (again.error < result.error) result = again;
 }
 
 Viewpoint::Viewpoint(const PolygonSoup& soup) : state_(std::make_unique<State>(soup)) {}
@@ -310,7 +380,7 @@ std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {
   const PlanePoints& plane = s.soup.facets()[source.facet].plane.points;
   const auto normal = cross(difference<Extended>(*plane.b, *plane.a), difference<Extended>(*plane.c, *plane.a));
   const Extended height = dot(normal, difference<Extended>(*plane.a, s.view.receiver().point));
-  s.fine.for_each_arc([&](const Arc<Extended>& arc) {
+  s.finest.for_each_arc([&](const Arc<Extended>& arc) {
     if (!(arc.t0 < arc.t1)) return;
     const auto p = arc.cone->corners.w(arc.side->from);
     const auto e = arc.cone->corners.w(arc.side->to) - p;

@@ -11,7 +11,9 @@
 namespace exitance {
 
 /// A convex source: a whole facet (empty loop) or a piece of it, whose loop runs counter-clockwise seen from the
-/// facet's front and whose points, though rounded, lie in the facet's plane by identity.
+/// facet's front. A point of a piece lies in the facet's plane by identity: if rounded, it stands for the point exactly
+/// in the plane to which it drops along a coordinate axis (ViewFrame). Pieces that share corners tile the facet
+/// exactly, whatever lies in contact with it, and edges that they do not share with it miss its edges by a rounding.
 struct Source {
   std::uint32_t facet = 0;
   std::span<const Vec3> loop;
@@ -58,10 +60,12 @@ class Viewpoint {
   bool covered() const;
 
   /// F from the point to the visible part of the source, from whichever side it is seen. Where double precision cannot
-  /// prove an error within `tolerance`, it is computed again with 80 digits; what can be proven then is in `error`.
+  /// prove an error within `tolerance`, it is computed again with more digits, at last with 80; what can be proven then
+  /// is in `error`.
   PointFormFactor form_factor(const Source& source, double tolerance = 1e-13);
 
-  /// The same where it is known what may stand between: items of the soup's index, ascending. Others are not looked for.
+  /// The same where it is known what may stand between: items of the soup's index, ascending. Others are not looked
+  /// for.
   PointFormFactor form_factor(const Source& source, std::span<const std::uint32_t> items, double tolerance);
 
   /// The boundary of the visible part of the source above the horizon, in no particular order.

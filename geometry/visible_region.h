@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <span>
 
 #include "geometry/chart.h"
@@ -49,8 +50,14 @@ class VisibleRegion {
 
   /// Starts on a source in a facet's plane, seen from the view's point, which lies strictly on side `facing` (±1) of
   /// that plane. Its corners run counter-clockwise seen from the facet's front; `horizon`: the sign of each against the
-  /// receiver's horizon. False when no part of it is above the horizon.
-  bool set_source(std::uint32_t facet, int facing, PointLoop loop, std::span<const int> horizon);
+  /// receiver's horizon. False when no part of it is above the horizon. `drop`: given if the corners lie in the plane
+  /// up to rounding only; with a height for each and then zeros, to a multiple of kLanes. Used until the next source.
+  bool set_source(std::uint32_t facet, int facing, PointLoop loop, std::span<const int> horizon, const Drop* drop);
+
+  /// Of the current source no facets will be added but these, ascending, and those of convex shells. An edge that an
+  /// occluder shares with one that is left out bounds what is seen, even where the corners of a rounded source reach an
+  /// ulp into the one left out. Unless said, all facets are added that hide something of the source.
+  void will_add_only(std::span<const std::uint32_t> facets) { added_only_ = facets; }
 
   /// How wrong [rad] the end of an arc may be before exact arithmetic is asked; at first 2^-46.
   void set_bearable_angle(double angle) { bearable_angle_ = angle; }
@@ -108,15 +115,11 @@ class VisibleRegion {
   struct PlaneSides {
     bool in_front = false, behind = false;
   };
-  template <class Own>
-  PlaneSides sides_of(const FacedPlane& faced, const Corners<Real>& corners, std::size_t n, const Own& own);
-  bool is_one_of(const Vec3& v, std::span<const Corner> loop) const {
-    return std::any_of(loop.begin(), loop.end(), [&](const Corner& c) { return c.at == v; });
-  }
-  bool is_one_of(const Vec3& v, std::span<const Vec3* const> loop) const {
-    return std::any_of(loop.begin(), loop.end(), [&](const Vec3* c) { return *c == v; });
-  }
-
+  template <class Decide>
+  PlaneSides sides_of(const FacedPlane& faced, const Corners<Real>& corners, std::size_t n, const double* astray,
+                      const Decide& decide);
+  PlaneSides sides_of_source(const FacedPlane& faced, std::span<const Corner> occluder);
+  PlaneSides sides_of_occluder(const Cone<Real>& cone, std::span<const Corner> occluder);
   void fill(Row<Real>& row, const ConeSide<Real>& side, const Cone<Real>& cone) {
     row.fill(side, cone.corners, frame_, view_.counts());
   }
@@ -138,6 +141,7 @@ class VisibleRegion {
   const Plane* source_plane_ = nullptr;
   int facing_source_ = 1;
   double bearable_angle_ = 0x1p-46;
+  std::optional<std::span<const std::uint32_t>> added_only_;
   Cone<Real> source_;
   std::deque<Added> added_;  // count_ of them in use; they may point into themselves
   std::size_t count_ = 0;
@@ -148,25 +152,29 @@ class VisibleRegion {
   std::vector<Signed<Real>> weight_;
   std::vector<Stretch<Real>> within_, open_;
   std::vector<const Vec3*> loop_;  // of the source
+  const Drop* drop_ = nullptr;
   Chart chart_;
 };
 
 template <class Real>
-bool VisibleRegion<Real>::set_source(std::uint32_t facet, int facing, PointLoop loop, std::span<const int> horizon) {
+bool VisibleRegion<Real>::set_source(std::uint32_t facet, int facing, PointLoop loop, std::span<const int> horizon,
+                                     const Drop* drop) {
   source_facet_ = facet;
   source_plane_ = &soup_.facets()[facet].plane;
-  frame_ = {view_.receiver().point, view_.receiver().normal, source_plane_->points};
+  drop_ = drop;
+  frame_ = drop ? drop->frame : ViewFrame{view_.receiver().point, view_.receiver().normal, source_plane_->points};
   facing_source_ = facing;
   count_ = 0;
+  added_only_.reset();
   if (std::none_of(horizon.begin(), horizon.end(), [](int s) { return s > 0; })) return false;
   loop_.assign(loop.begin(), loop.end());
-  cones_.set(source_, loop, -facing, true);
+  cones_.set(source_, loop, -facing, drop);
   if (std::any_of(horizon.begin(), horizon.end(), [](int s) { return s < 0; })) {
     ConeSide<Real> closing;
     closing.m = {Real(frame_.normal.x), Real(frame_.normal.y), Real(frame_.normal.z)};
     closing.length = norm(closing.m);
     closing.error = 5 * roundoff<Real>() * closing.length;
-    closing.exact = {ViewPlane::Kind::horizon, 1, nullptr, nullptr, nullptr};
+    closing.exact = {ViewPlane::Kind::horizon};
     weight_.clear();
     for (std::size_t k = 0; k < loop.size(); ++k) {
       if (horizon[k] == 0) {
@@ -175,7 +183,8 @@ bool VisibleRegion<Real>::set_source(std::uint32_t facet, int facing, PointLoop 
       }
       // Of corners near the horizon, as of an edge shared with the receiver's surface, rounding would leave only noise.
       const Corners<Real>& corners = source_.corners;
-      const Signed<Real> value{dot(closing.m, corners.w(k)), closing.error * corners.length(k), horizon[k]};
+      const Real error = closing.error * corners.length(k) + closing.length * corners.error(k);
+      const Signed<Real> value{dot(closing.m, corners.w(k)), error, horizon[k]};
       const bool is_clear = value.value * horizon[k] > 0x1p20 * value.error;
       weight_.push_back(is_clear ? value : refined_value_at(closing, corners.exact(k), frame_, view_.counts()));
     }
@@ -287,14 +296,14 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
 
   PlaneSides of_source;
   if (!covers) {
-    of_source = sides_of({f.plane, facing}, source_.corners, loop_.size(), loop);
+    of_source = sides_of_source({f.plane, facing}, loop);
     if (!of_source.behind) return Effect::none;
   }
   added.cone = &cones_.of_facet(facet);
   if (!ViewCones<Real>::reaches_above(*added.cone)) return Effect::none;
   bool pierces = false;
   if (!covers) {
-    const auto of_occluder = sides_of({*source_plane_, facing_source_}, added.cone->corners, loop.size(), loop_);
+    const auto of_occluder = sides_of_occluder(*added.cone, loop);
     if (!of_occluder.in_front) return Effect::none;
     pierces = of_occluder.behind && of_source.in_front;
   }
@@ -321,6 +330,8 @@ bool VisibleRegion<Real>::goes_on(const ConeSide<Real>& side, const Facet& occlu
   const std::uint32_t n = side.across;
   if (n == kNone || n == source_facet_ || view_.facing(n) != facing) return false;
   const Facet& neighbour = soup_.facets()[n];
+  const bool of_convex_shell = neighbour.shell != kNone && soup_.shells()[neighbour.shell].convex;
+  if (added_only_ && !of_convex_shell && !std::ranges::binary_search(*added_only_, n)) return false;
   if (covers) {
     const auto coplanar = soup_.coplanar(source_facet_);
     return neighbour.polygon == occluder.polygon && std::binary_search(coplanar.begin(), coplanar.end(), n);
@@ -334,25 +345,51 @@ bool VisibleRegion<Real>::goes_on(const ConeSide<Real>& side, const Facet& occlu
   return std::any_of(corners.begin(), corners.end(), [&](const Corner& k) { return side_of_source(k) > 0; });
 }
 
-/// On which sides of a facet's plane, seen from the side that it faces, the first n corners of a cone lie, which are
-/// input points. Those that are corners of the facet lie in its plane by identity, those of `own` too.
+/// On which sides of an occluder's plane, seen from the side that it faces, the source's corners lie. Those that are
+/// the occluder's, too, lie in its plane by identity.
 template <class Real>
-template <class Own>
+typename VisibleRegion<Real>::PlaneSides VisibleRegion<Real>::sides_of_source(const FacedPlane& faced,
+                                                                              std::span<const Corner> occluder) {
+  return sides_of(faced, source_.corners, loop_.size(), drop_ ? drop_->height.data() : nullptr, [&](std::size_t k) {
+    const Vec3& v = *loop_[k];
+    if (drop_) {  // where S is 0, the plane through x and the line of both planes tells as T does, times S(x)
+      const ViewPlane cut{ViewPlane::Kind::cut, facing_source_, nullptr, nullptr, &faced.plane.points};
+      return exact_value_at(frame_, cut, source_.corners.exact(k), view_.counts()).sign;
+    }
+    const bool own = std::ranges::any_of(occluder, [&](const Corner& c) { return c.at == v; });
+    return own ? 0 : side_of(faced.plane, v, view_.counts());
+  });
+}
+
+/// On which sides of the source's plane, seen from the side that it faces, an occluder's corners lie. Those that are
+/// the source's, too, lie in its plane by identity.
+template <class Real>
+typename VisibleRegion<Real>::PlaneSides VisibleRegion<Real>::sides_of_occluder(const Cone<Real>& cone,
+                                                                                std::span<const Corner> occluder) {
+  return sides_of({*source_plane_, facing_source_}, cone.corners, occluder.size(), nullptr, [&](std::size_t k) {
+    const Vec3& v = occluder[k].at;
+    const bool own = !drop_ && std::ranges::any_of(loop_, [&](const Vec3* c) { return *c == v; });
+    return own ? 0 : side_of(*source_plane_, v, view_.counts());
+  });
+}
+
+/// On which sides of a plane the first n corners of a cone lie, which are input points, each up to `astray` from where
+/// it is meant to be (null: all where they are). decide(k) tells the exact sign, where double precision cannot.
+template <class Real>
+template <class Decide>
 typename VisibleRegion<Real>::PlaneSides VisibleRegion<Real>::sides_of(const FacedPlane& faced,
                                                                        const Corners<Real>& corners, std::size_t n,
-                                                                       const Own& own) {
-  const Plane& plane = faced.plane;
+                                                                       const double* astray, const Decide& decide) {
   PlaneSides sides;
-  const auto decide = [&](std::size_t k) {
-    const Vec3& v = *corners.exact(k).a;
-    if (is_one_of(v, own)) return;
-    const int s = faced.facing * side_of(plane, v, view_.counts());
+  const auto ask = [&](std::size_t k) {
+    const int s = faced.facing * decide(k);
     sides.in_front = sides.in_front || s > 0;
     sides.behind = sides.behind || s < 0;
   };
   if constexpr (std::is_same_v<Real, double>) {
     // n · w + n · (x − o): the normal is wrong by at most √3 normal_error, w and x − o by u of each component; three
     // roundings each of the products and one of the sum. |n| ≤ √3 normal_size.
+    const Plane& plane = faced.plane;
     const Vec3 to_x = frame_.x - plane.origin, n_faced = faced.facing * plane.normal;
     const double height = dot(n_faced, to_x), distance = std::fabs(to_x.x) + std::fabs(to_x.y) + std::fabs(to_x.z);
     const double per_length = 12 * kRoundoff * plane.normal_size + 2 * plane.normal_error;
@@ -360,16 +397,18 @@ typename VisibleRegion<Real>::PlaneSides VisibleRegion<Real>::sides_of(const Fac
       const auto& c = corners.block(first / kLanes);
       const Doubles value =
           n_faced.x * load(c.x.data()) + n_faced.y * load(c.y.data()) + n_faced.z * load(c.z.data()) + height;
-      const SignBytes signs = certain_signs(value, per_length * (load(c.length.data()) + distance));
+      Doubles error = per_length * (load(c.length.data()) + distance);
+      if (astray) error = error + 2 * plane.normal_size * load(astray + first);
+      const SignBytes signs = certain_signs(value, error);
       const SignBytes asked = n - first >= kLanes ? kOnes : kOnes & ((SignBytes{1} << (8 * (n - first))) - 1);
       sides.in_front = sides.in_front || (positive_bytes(signs) & asked) != 0;
       sides.behind = sides.behind || (negative_bytes(signs) & asked) != 0;
       if (!sides.in_front || !sides.behind) {
-        for_each_byte(zero_bytes(signs) & asked, [&](std::size_t k) { decide(first + k); });
+        for_each_byte(zero_bytes(signs) & asked, [&](std::size_t k) { ask(first + k); });
       }
     }
   } else {
-    for (std::size_t k = 0; k < n; ++k) decide(k);
+    for (std::size_t k = 0; k < n; ++k) ask(k);
   }
   return sides;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "src/scene/furnished_room.h"
 
@@ -230,6 +231,42 @@ TEST(PointRows, RowsAndColumnsAreThoseOfTheWholeMatrix) {
     for (std::size_t e = 0; e < F.size(); ++e) EXPECT_EQ(F[e], row(all.F, e)[patch]) << e << ' ' << patch;
   }
   EXPECT_EQ(rows.some(7, 7).F.rows(), 0u);
+}
+
+Vec3 turned(const Vec3& v, const Vec3& axis, double angle) {  // Rodrigues
+  const Vec3 k = normalized(axis);
+  return std::cos(angle) * v + std::sin(angle) * cross(k, v) + (1 - std::cos(angle)) * dot(k, v) * k;
+}
+
+/// Turned, patches' corners lie off the plane of their facet by a rounding, and surfaces in contact lie before or
+/// behind each other by as much; faces are two triangles that are not quite in one plane.
+/// No sample point lies on an edge of the contacts: from an ulp away what is seen is what the rounded numbers say.
+TEST(PointRows, PatchesOfTurnedSurfacesInContactTileWhatIsSeen) {
+  const Vec3 axes[] = {{1, 2, 3}, {-2, 1, 5}, {1, 0, 0}, {1, 1, 1}};
+  int turn = 0;
+  for (const Vec3& axis : axes) {
+    for (const double far_off : {0.0, 1e4}) {
+      Scene scene = empty_scene();
+      add_room(scene, {0, 0, 0}, {3, 3, 3});
+      add_box(scene, {1, 1, 0}, {2, 2, 1});
+      add_box(scene, {1.3, 1.3, 1}, {1.8, 2, 1.5});
+      add_box(scene, {0, 1, 0}, {1, 2, 0.5});
+      for (Surface& surface : scene.surfaces) {
+        for (Vec3& v : surface.polygon.outer) v = turned(v, axis, 0.6458 + turn) + Vec3{far_off, far_off, 0};
+      }
+      ++turn;
+      for (const double size : {1.0, 0.6}) {
+        const Rows rows(scene, {.patch_size = size});
+        const PointRows all = rows.all();
+        // An ulp of coordinates is a gap or an overlap of that much between patches and facets.
+        EXPECT_LT(all.statistics.closure_max_defect, far_off > 0 ? 1e-10 : 1e-13) << turn << ' ' << size;
+        for (std::size_t e = 0; e < rows.mesh.elements.size(); ++e) {
+          const auto F = row(all.F, e);
+          EXPECT_LT(std::accumulate(F.begin(), F.end(), 0.0), 1 + 1e-10) << turn << ' ' << size << ' ' << e;
+        }
+      }
+    }
+  }
 }
 
 TEST(PointRows, StatisticsOfSomeElementsAreThoseOfTheirRows) {
