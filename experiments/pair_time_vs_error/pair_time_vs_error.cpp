@@ -130,12 +130,12 @@ int run(int argc, char** argv) {
   Plot plot{"Form factors between patches", "seconds a pair (one thread)", "largest error", {}};
   for (const char* name : kScenes) {
     answer(name, reduced, table, plot);
+    if (!out.empty()) {  // after each scene, as they take long
+      std::filesystem::create_directories(out);
+      table.write(std::filesystem::path(out) / "results.csv");
+      write_plot(std::filesystem::path(out) / "plot.svg", plot);
+    }
     if (reduced) break;
-  }
-  if (!out.empty()) {
-    std::filesystem::create_directories(out);
-    table.write(std::filesystem::path(out) / "results.csv");
-    write_plot(std::filesystem::path(out) / "plot.svg", plot);
   }
   if (expected.empty()) return 0;
   const std::vector<std::string> wrong = worse_than(table, CsvTable::read(expected));

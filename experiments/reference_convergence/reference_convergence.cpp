@@ -35,8 +35,8 @@ struct Question {
 };
 
 std::vector<Question> questions() {
-  return {{"box_on_floor", read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml"), 2e-3},
-          {"cornell_box_closed", read_scene(EXITANCE_SOURCE_DIR "/data/cornell_box_closed.toml"), 5e-3},
+  return {{"box_on_floor", read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml"), 3e-3},
+          {"cornell_box_closed", read_scene(EXITANCE_SOURCE_DIR "/data/cornell_box_closed.toml"), 8e-3},
           {"furnished_room", make_furnished_room(100, 1), 1e-2, 2}};
 }
 

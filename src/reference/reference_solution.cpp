@@ -28,9 +28,10 @@ namespace {
 constexpr std::uint32_t kElementsPerEdge = 4;
 /// Of the error's square, what the patches have that are divided at a time.
 constexpr double kShareDivided = 0.7;
-/// Of what dividing a patch has changed within a part, the share that is taken for the part's own error. Where B is
-/// smooth it is a fifteenth, where its derivative jumps about a quarter.
-constexpr double kShareOfChange = 0.25;
+/// What is taken for a patch's own error: of what dividing has changed in it, this share (where B is smooth a fifteenth
+/// is left of it; along edges, where B is not, nearly half); and of what polynomials leave over of the means this
+/// multiple, as more is left over between them.
+constexpr double kShareOfChange = 0.5, kLeftOver = 2;
 /// Of the error wanted, what the solver may leave and what the polynomials' corrections may still change.
 constexpr double kSolverShare = 1e-4;
 constexpr int kMostCorrections = 50;
@@ -281,7 +282,7 @@ class ReferenceSolver {
     std::vector<double> apart;
     for (std::uint32_t e = 0; e < Y.size(); ++e) {
       const double left = Y[e] - polynomials.mean(e, coefficients, 1, 0), area = mesh.elements[e].area;
-      share_[mesh.elements[e].patch] += area * left * left;
+      share_[mesh.elements[e].patch] += kLeftOver * kLeftOver * area * left * left;
       reference += area * Y[e] * Y[e];
       apart.push_back(Y[e] - Y_lower[e]);
     }
