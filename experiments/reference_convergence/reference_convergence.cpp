@@ -66,7 +66,7 @@ void converge(const Question& question, std::size_t most_levels, CsvTable& table
                                         std::log(elements / estimated.points.back().first));
     }
     estimated.points.emplace_back(elements, level.error.total);
-    measured.points.emplace_back(elements, apart.pointwise_error);
+    if (k + 1 < records.size()) measured.points.emplace_back(elements, apart.pointwise_error);
     table.rows.push_back({question.name, fmt::format("{}", k), fmt::format("{}", level.patches),
                           fmt::format("{}", level.elements), digits(level.error.total), digits(level.error.integration),
                           order, digits(apart.pointwise_error), digits(apart.error), fmt::format("{:.1f}", seconds)});
