@@ -301,13 +301,13 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
       side.exact = {ViewPlane::Kind::edge, sign, loop[side.from], loop[side.to], nullptr, drop != nullptr};
       side.stretch = {};
       side.across = 0xffffffffu;
-      if constexpr (std::is_same_v<Real, double>) {
-        if (drop != nullptr) {
-          const double a = drop->height[side.from], b = drop->height[side.to];
-          const double to_length = norm(Vec<double>{to_x[k], to_y[k], to_z[k]});
-          side.error += 1.01 * (a * to_length + b * c.length[k] + a * b);
+      if constexpr (std::is_floating_point_v<Real>) {
+        if (drop != nullptr && std::is_same_v<Real, double>) {
+          const Real a = drop->height[side.from], b = drop->height[side.to];
+          const Real to_length = norm(Vec<Real>{to_x[k], to_y[k], to_z[k]});
+          side.error += Real(1.01) * (a * to_length + b * c.length[k] + a * b);
         }
-        if (side.error > 0x1p-44 * side.length) {  // the edge's line passes near x
+        if (side.error > 512 * kRoundoff * side.length) {  // the edge's line passes near x
           const Vec3 m =
               sign * (drop ? exact_cross(drop->frame, side.exact) : exact_cross(x, *side.exact.c, *side.exact.d));
           side.m = {m.x, m.y, m.z};
@@ -319,11 +319,11 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
   }
 }
 
-/// The side's functional at a corner, from exact arithmetic.
+/// The side's functional at a corner, known better: its sign exactly, its value to that relative accuracy.
 template <class Real>
 Signed<Real> refined_value_at(const ConeSide<Real>& side, const ViewPoint& corner, const ViewFrame& frame,
-                              StageCounts& counts) {
-  const ExactValue v = exact_value_at(frame, side.exact, corner, counts);
+                              StageCounts& counts, double accuracy = 0x1p-44) {
+  const ExactValue v = exact_value_at(frame, side.exact, corner, counts, accuracy);
   // A value that underflows still has its sign.
   if (v.sign != 0 && v.value == 0) return {v.sign * std::numeric_limits<Real>::min(), Real(1), v.sign};
   return {Real(v.value), Real(v.error), v.sign};
@@ -397,7 +397,9 @@ class Row {
       const bool own_vertex = side.exact.kind == ViewPlane::Kind::edge && corner.kind == ViewPoint::Kind::vertex &&
                               side.exact.dropped == corner.dropped &&
                               (*side.exact.c == *corner.a || *side.exact.d == *corner.a);
-      const auto s = own_vertex ? Signed<Real>{} : refined_value_at(side, corner, frame, counts);
+      // In double precision a crossing is refined where that matters.
+      constexpr double accuracy = std::is_same_v<Real, double> ? 0.5 : 0x1p-50;
+      const auto s = own_vertex ? Signed<Real>{} : refined_value_at(side, corner, frame, counts, accuracy);
       row.value[k] = s.value;
       row.error[k] = s.error;
       set_sign_byte(row.signs, k, s.sign);
@@ -409,7 +411,8 @@ class Row {
 };
 
 /// Narrows the stretch to where the linear function from a (at 0) to b (at 1) is positive. Both zero is the caller's
-/// case. refine(): called to make a and b more exact when the error of the crossing exceeds `bearable`.
+/// case. refine(a, b, accuracy): called when the error of the crossing exceeds `bearable`, with ever better accuracies,
+/// to make a and b known to that or better.
 template <class Real, class Refine>
 void narrow(Stretch<Real>& stretch, Signed<Real> a, Signed<Real> b, const Real& bearable, const Refine& refine) {
   using std::fabs;
@@ -427,8 +430,9 @@ void narrow(Stretch<Real>& stretch, Signed<Real> a, Signed<Real> b, const Real& 
                                                : Real(1);
     };
     find_crossing();
-    if (error > bearable) {
-      refine(a, b);
+    for (const double accuracy : {0.5, 0x1p-44}) {
+      if (!(error > bearable)) break;
+      refine(a, b, accuracy);
       find_crossing();
     }
     error += 5 * roundoff<Real>();
@@ -475,7 +479,7 @@ void clip(Cone<Real>& cone, const std::vector<Signed<Real>>& weight, ViewPoint::
     ConeSide<Real> side = cone.sides[(start + k) % n];
     const Signed<Real>&a = weight[side.from], &b = weight[side.to];
     if (a.sign * b.sign < 0) {
-      narrow(side.stretch, a, b, Real(1), [](auto&, auto&) {});
+      narrow(side.stretch, a, b, Real(1), [](auto&, auto&, double) {});
       const std::uint32_t point = crossing(side, side.stretch, inside ? side.stretch.hi : side.stretch.lo);
       if (!inside) close(exit, point);
       exit = point;

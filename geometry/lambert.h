@@ -14,7 +14,8 @@ class LambertSum {
  public:
   explicit LambertSum(const Vec3& normal) : n_{Real(normal.x), Real(normal.y), Real(normal.z)}, n_length_(norm(n_)) {}
 
-  void add(const Arc<Real>& arc) {
+  /// Gives the angle [rad] under which the arc is seen.
+  Real add(const Arc<Real>& arc) {
     using std::atan2;
     using std::fabs;
     const Real u = roundoff<Real>();
@@ -55,11 +56,12 @@ class LambertSum {
     ++arcs_;
     if (!second_order_is_small) {  // nothing is known; an arc is shorter than π
       error_ += boost::math::constants::pi<Real>();
-      return;
+      return theta;
     }
     add(arc.of_source ? term : Real(-term));
     error_ += fabs(g) * dtheta + theta * dg + 4 * u * fabs(term);
     size_ += fabs(term);
+    return theta;
   }
 
   std::size_t arcs() const { return arcs_; }

@@ -1,14 +1,14 @@
 #include "geometry/predicates.h"
 
-#include <CGAL/Interval_nt.h>
 #include <CGAL/Mpzf.h>
 
 #include <cmath>
 
+#include "geometry/bounded.h"
+
 namespace exitance {
 namespace {
 
-using Interval = CGAL::Interval_nt<false>;
 using Exact = CGAL::Mpzf;
 
 template <class NT>
@@ -113,24 +113,12 @@ NT functional(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& p
   return point.sign_at_a > 0 ? value : NT(0) - value;
 }
 
-/// Sign of an interval that doesn't hold 0. Overflow gives an interval that does, or one with a NaN, which decides
-/// nothing.
-std::optional<int> certain_sign(const Interval& value) {
-  if (value.inf() > 0) return 1;
-  if (value.sup() < 0) return -1;
-  if (value.inf() == 0 && value.sup() == 0) return 0;
-  return std::nullopt;
-}
-
 /// The last two stages for a polynomial given as a generic function of the number type.
 template <class Polynomial>
 int sign_of(const Polynomial& polynomial, StageCounts& counts) {
-  {
-    const Interval::Protector rounding;
-    if (const auto sign = certain_sign(polynomial.template operator()<Interval>())) {
-      ++counts.interval;
-      return *sign;
-    }
+  if (const auto sign = certain_sign(polynomial.template operator()<Bounded>())) {
+    ++counts.interval;
+    return *sign;
   }
   ++counts.exact;
   return static_cast<int>(CGAL::sign(polynomial.template operator()<Exact>()));
@@ -172,8 +160,7 @@ std::optional<int> orientation_filter(const Vec3& a, const Vec3& b, const Vec3& 
 }
 
 std::optional<int> orientation_interval(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& v) {
-  const Interval::Protector rounding;
-  return certain_sign(orientation_value<Interval>(a, b, c, v));
+  return certain_sign(orientation_value<Bounded>(a, b, c, v));
 }
 
 int orientation_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& v) {
@@ -200,25 +187,28 @@ int horizon_side(const Vec3& x, const Vec3& normal, const Vec3& v, StageCounts& 
   return sign_of([&]<class NT>() { return horizon_value<NT>(x, normal, v); }, counts);
 }
 
-ExactValue exact_value_at(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& point, StageCounts& counts) {
+ExactValue exact_value_at(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& point, StageCounts& counts,
+                          double accuracy) {
   if (is_zero_at_sight(frame.x, plane, point)) {
     ++counts.filter;
     return {};
   }
   {
-    const Interval::Protector rounding;
-    Interval span;
-    const Interval scaled = functional<Interval>(frame, plane, point, span);
-    if (scaled.inf() == 0 && scaled.sup() == 0) {
+    Bounded span(0);
+    const Bounded scaled = functional<Bounded>(frame, plane, point, span);
+    const auto sign = certain_sign(scaled);
+    if (sign == 0) {
       ++counts.interval;
       return {};
     }
-    if ((scaled.inf() > 0 || scaled.sup() < 0) && span.inf() > 0) {
-      const Interval value = scaled / span;
-      const double middle = 0.5 * (value.inf() + value.sup()), width = value.sup() - value.inf();
-      if (width <= 0x1p-44 * std::fabs(middle)) {
+    if (sign && span.value() > span.certain_error()) {
+      const long double relative = scaled.certain_error() / std::fabs(scaled.value()) +
+                                   1.01L * span.certain_error() / (span.value() - span.certain_error());
+      if (relative <= static_cast<long double>(accuracy)) {
         ++counts.interval;
-        return {plane.sign * middle, width, middle > 0 ? plane.sign : -plane.sign};
+        const auto value = static_cast<double>(scaled.value() / span.value());
+        const double error = (static_cast<double>(relative) * 1.01 + 0x1p-52) * std::fabs(value);
+        return {plane.sign * value, error, plane.sign * *sign};
       }
     }
   }

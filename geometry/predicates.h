@@ -79,7 +79,7 @@ struct ViewFrame {
   int axis_sign = 1;  ///< of N
 };
 
-/// A functional's value, nearly as exact as a double can hold it, with its exact sign.
+/// A functional's value with its exact sign.
 struct ExactValue {
   double value = 0;
   double error = 0;  ///< bound
@@ -87,8 +87,9 @@ struct ExactValue {
 };
 
 /// Value of the functional at the point, by interval and, where those are wide, by exact arithmetic (the double filter
-/// is the caller's, who has the values at hand). Relative error at most 2^-44.
-ExactValue exact_value_at(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& point, StageCounts& counts);
+/// is the caller's, who has the values at hand). Its sign is exact, its relative error at most `accuracy` or 2^-44.
+ExactValue exact_value_at(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& point, StageCounts& counts,
+                          double accuracy = 0x1p-44);
 
 /// det(b − a, c − a, v − a) for the points of a plane, relative error at most 2^-48.
 ExactValue exact_plane_value(const PlanePoints& plane, const Vec3& v);

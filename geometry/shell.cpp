@@ -6,20 +6,17 @@
 
 #include <unordered_map>
 
+#include "geometry/enclosed_volume.h"
+
 namespace exitance {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
 bool bounds_solid(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles) {
-  const Vec3 origin = vertices[triangles.front()[0]];
-  double volume = 0, size = 0;
-  for (const auto& t : triangles) {
-    const Vec3 a = vertices[t[0]] - origin, b = vertices[t[1]] - origin, c = vertices[t[2]] - origin;
-    volume += dot(cross(a, b), c);
-    size += norm(a) * norm(b) * norm(c);
-  }
-  if (!(volume > 1e-12 * size)) return false;
+  EnclosedVolume volume(vertices[triangles.front()[0]]);
+  for (const auto& t : triangles) volume.add(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+  if (!(volume.value() > 0)) return false;
 
   Mesh mesh;
   std::unordered_map<std::uint32_t, Mesh::Vertex_index> vertex_of;

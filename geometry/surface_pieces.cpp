@@ -4,12 +4,14 @@
 #include <utility>
 
 #include "geometry/edge_contact.h"
+#include "geometry/enclosed_volume.h"
 #include "geometry/shell_interior.h"
 
 namespace exitance {
 namespace {
 
-// Volumes below this share of area times diameter are rounding: the piece bounds nothing.
+// A piece that other pieces close, such as a sheet between walls, bounds nothing if its volume is below this share of
+// area times diameter: the corners of a flat one are rounded.
 constexpr double kNoVolume = 1e-12;
 // A point this share of a facet's size above its middle lies in front of it, also after rounding.
 constexpr double kAbove = 1e-6;
@@ -93,9 +95,10 @@ class PieceFinder {
     if (!piece.closed || piece.area == 0) return;
     // Seen from a point of the piece, not from a far origin.
     const Vec3 origin = facets(i).front().loop.front();
-    double volume = 0;
-    for (const Loop& loop : closed_surface(i)) volume += dot(loop.front() - origin, area_vector(loop)) / 3;
-    if (std::fabs(volume) > kNoVolume * piece.area * norm(boxes_[i].upper - boxes_[i].lower)) piece.volume = volume;
+    EnclosedVolume volume(origin);
+    for (const Loop& loop : closed_surface(i)) volume.add(loop);
+    const double least = rims_[i].empty() ? 0 : kNoVolume * piece.area * norm(boxes_[i].upper - boxes_[i].lower);
+    if (std::fabs(volume.value()) > least) piece.volume = volume.value();
   }
 
   void find_enclosures() {

@@ -2,14 +2,89 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include "geometry/extended.h"
 #include "geometry/lambert.h"
 #include "geometry/visible_region.h"
 
 namespace exitance {
+namespace {
+
+std::uint64_t mixed(std::uint64_t v) {  // splitmix64
+  v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9u;
+  v = (v ^ (v >> 27)) * 0x94d049bb133111ebu;
+  return v ^ (v >> 31);
+}
+std::uint64_t id_of(const Vec3& v) {
+  const auto bits = [](double c) { return std::bit_cast<std::uint64_t>(c + 0.0); };
+  return mixed(bits(v.x) + mixed(bits(v.y) + mixed(bits(v.z) + 1)));
+}
+constexpr std::uint64_t kHorizon = 1;
+/// The same for an edge from either end.
+std::uint64_t id_of(const ViewPlane& side) {
+  switch (side.kind) {
+    case ViewPlane::Kind::edge:
+      return mixed(id_of(*side.c) + id_of(*side.d));
+    case ViewPlane::Kind::horizon:
+      return 1;
+    case ViewPlane::Kind::cut:
+      return mixed(id_of(*side.T->a) + 3 * id_of(*side.T->b) + 5 * id_of(*side.T->c));
+  }
+  return 0;
+}
+
+/// [rad] Shorter stretches of edges come and go by rounding.
+constexpr double kShortest = 1e-9;
+
+/// Whether an edge is seen along the horizon, where which of the two bounds is a matter of rounding.
+template <class Real>
+bool is_level(const ConeSide<Real>& side, const Vec3& normal) {
+  constexpr double kLevel = 1e-9;  // sine
+  const Vec<Real> n{Real(normal.x), Real(normal.y), Real(normal.z)};
+  return norm(cross(side.m, n)) <= kLevel * side.length * norm(n);
+}
+
+/// Ends of a stretch, as unit vectors from the point of view.
+using Ends = std::pair<Vec3, Vec3>;
+Ends ends_of(const Arc<double>& arc) {
+  const auto p = arc.cone->corners.w(arc.side->from), e = arc.cone->corners.w(arc.side->to) - p;
+  const auto direction = [&](double t) {
+    const Vec3 w{p.x + t * e.x, p.y + t * e.y, p.z + t * e.z};
+    return (1 / norm(w)) * w;
+  };
+  return {direction(arc.t0), direction(arc.t1)};
+}
+
+/// How many chains stretches form that follow each other end to end.
+std::uint64_t chains(std::span<const Ends> stretches) {
+  std::uint64_t joints = 0;
+  const auto meet = [](const Vec3& p, const Vec3& q) { return norm(p - q) <= kShortest; };
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto& [a, b] = stretches[i];
+      const auto& [c, d] = stretches[j];
+      joints += meet(a, c) || meet(a, d) || meet(b, c) || meet(b, d);
+    }
+  }
+  return stretches.size() - joints;
+}
+
+/// Two points of the line in which planes meet, given by a point and a normal each.
+std::pair<Vec3, Vec3> line_of(const Vec3& p, const Vec3& n, const Vec3& q, const Vec3& m) {
+  const Vec3 d = cross(n, m);
+  const double size = dot(d, d);
+  // Both planes through p + v: n·v = 0, m·v = m·(q − p).
+  const Vec3 at = p + (dot(m, q - p) / size) * cross(d, n);
+  return {at, at + (1 / std::sqrt(size)) * d};
+}
+
+}  // namespace
+
 struct Viewpoint::State {
   static constexpr std::size_t kRecentBlockers = 4;
 
@@ -52,7 +127,9 @@ struct Viewpoint::State {
   const PolygonSoup& soup;
   View view;
   std::uint64_t extended = 0;
-  double hidden_value = 0;  // of the last sum, when its own error hides it
+  double hidden_value = 0;    // of the last sum, when its own error hides it
+  std::uint64_t outline = 0;  // of the last answer
+  std::vector<Ends> level;    // stretches along the horizon
   VisibleRegion<double> region;
   VisibleRegion<long double> fine;
   VisibleRegion<Extended> finest;
@@ -251,7 +328,19 @@ template <class Real>
 PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
   auto& r = region_of<Real>();
   LambertSum<Real> lambert(view.receiver().normal);
-  r.for_each_arc([&](const Arc<Real>& arc) { lambert.add(arc); });
+  level.clear();
+  r.for_each_arc([&](const Arc<Real>& arc) {
+    const Real angle = lambert.add(arc);
+    if constexpr (std::is_same_v<Real, double>) {
+      if (!(angle > kShortest)) return;
+      if (is_level(*arc.side, view.receiver().normal)) {
+        level.push_back(ends_of(arc));
+      } else {
+        outline += id_of(arc.side->exact);
+      }
+    }
+  });
+  if (!level.empty()) outline += kHorizon * chains(level);
   result.visibility = r.occluder_count() == 0 ? Visibility::open
                       : lambert.arcs() == 0   ? Visibility::blocked
                                               : Visibility::partial;
@@ -313,8 +402,10 @@ bool Viewpoint::State::put_items(const Source& source, int source_facing, std::s
 /// `put` puts what may hide something of the source, prepared and seen from the side it is told; false: all is hidden.
 template <class Put>
 PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance, const Put& put) {
-  region.set_bearable_angle(std::max(0x1p-46, tolerance / 16));
+  // Of one arc's end nearly all of the tolerance is borne at first: few are known so badly.
+  region.set_bearable_angle(std::max(0x1p-46, tolerance));
   PointFormFactor result;
+  outline = 0;
   int source_facing = 0;
   const bool above = prepare(source, source_facing);
   result.side = source_facing > 0 ? Side::front : source_facing < 0 ? Side::back : Side::edge_on;
@@ -326,6 +417,9 @@ PointFormFactor Viewpoint::State::answer(const Source& source, double tolerance,
   result = sum<double>(result);
   // All values that are given as 0 err the same way: they must not add up.
   const auto is_good = [&] { return result.error <= tolerance && hidden_value <= tolerance / 1024; };
+  if (is_good()) return result;
+  region.set_bearable_angle(std::max(0x1p-46, tolerance / 16));
+  sum_again<double>(source, source_facing, result);
   if (is_good()) return result;
   ++extended;
   sum_again<long double>(source, source_facing, result);
@@ -367,6 +461,34 @@ PointFormFactor Viewpoint::form_factor(const Source& source, double tolerance) {
 
 PointFormFactor Viewpoint::form_factor(const Source& source, std::span<const std::uint32_t> items, double tolerance) {
   return state_->answer(source, tolerance, [&](int facing) { return state_->put_items(source, facing, items); });
+}
+
+std::uint64_t Viewpoint::outline() const {
+  return state_->outline;
+}
+
+std::vector<SeenEdge> Viewpoint::seen_edges() {
+  State& s = *state_;
+  std::vector<SeenEdge> edges;
+  if (s.outline == 0) return edges;
+  const Plane& plane = s.soup.facets()[s.region.source_facet()].plane;
+  s.region.for_each_arc([&](const Arc<double>& arc) {
+    const ViewPlane& side = arc.side->exact;
+    SeenEdge edge;
+    edge.id = is_level(*arc.side, s.view.receiver().normal) ? kHorizon : id_of(side);
+    if (side.kind == ViewPlane::Kind::edge) {
+      edge.a = *side.c;
+      edge.b = *side.d;
+    } else if (side.kind == ViewPlane::Kind::horizon) {
+      std::tie(edge.a, edge.b) = line_of(plane.origin, plane.normal, s.view.receiver().point, s.view.receiver().normal);
+    } else {
+      const PlanePoints& T = *side.T;
+      std::tie(edge.a, edge.b) = line_of(plane.origin, plane.normal, *T.a, cross(*T.b - *T.a, *T.c - *T.a));
+    }
+    std::tie(edge.from, edge.to) = ends_of(arc);
+    if (norm(edge.to - edge.from) > kShortest) edges.push_back(edge);
+  });
+  return edges;
 }
 
 std::vector<BoundaryPiece> Viewpoint::visible_region(const Source& source) {

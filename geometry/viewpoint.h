@@ -43,6 +43,14 @@ struct BoundaryPiece {
   bool of_source = false;  ///< lies on the source's own boundary or on the horizon, else on an occluder's shadow
 };
 
+/// An edge of what is seen of a source: the line in space that it lies on, the same from every point of a receiver, and
+/// the stretch of it that bounds.
+struct SeenEdge {
+  std::uint64_t id = 0;  ///< of the line
+  Vec3 a, b;             ///< two points of the line
+  Vec3 from, to;         ///< ends of the stretch, as unit vectors from the point of view
+};
+
 /// One point of view. Holds scratch memory: one object a thread, used for many points of one soup, which must outlive
 /// it.
 class Viewpoint {
@@ -67,6 +75,12 @@ class Viewpoint {
   /// The same where it is known what may stand between: items of the soup's index, ascending. Others are not looked
   /// for.
   PointFormFactor form_factor(const Source& source, std::span<const std::uint32_t> items, double tolerance);
+
+  /// A fingerprint of which edges bound what the last form factor saw, and how often each; 0 where it saw nothing.
+  /// Stretches that are next to nothing don't count.
+  std::uint64_t outline() const;
+  /// Those edges themselves.
+  std::vector<SeenEdge> seen_edges();
 
   /// The boundary of the visible part of the source above the horizon, in no particular order.
   std::vector<BoundaryPiece> visible_region(const Source& source);

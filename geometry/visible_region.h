@@ -237,10 +237,10 @@ template <class Real>
 void VisibleRegion<Real>::narrow_along(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone,
                                        const ConeSide<Real>& edge, const ConeSide<Real>& side) {
   narrow(stretch, row.at(edge.from), row.at(edge.to), Real(bearable_angle_ / (edge.sweep + bearable_angle_ * 0x1p20)),
-         [&](Signed<Real>& a, Signed<Real>& b) {
-           if constexpr (!std::is_same_v<Real, double>) return;
-           a = refined_value_at(side, cone.corners.exact(edge.from), frame_, view_.counts());
-           b = refined_value_at(side, cone.corners.exact(edge.to), frame_, view_.counts());
+         [&](Signed<Real>& a, Signed<Real>& b, double accuracy) {
+           if constexpr (!std::is_floating_point_v<Real>) return;
+           a = refined_value_at(side, cone.corners.exact(edge.from), frame_, view_.counts(), accuracy);
+           b = refined_value_at(side, cone.corners.exact(edge.to), frame_, view_.counts(), accuracy);
          });
 }
 

@@ -1,11 +1,13 @@
 #include "src/cli/case_answers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "src/cli/case_reader.h"
 #include "src/cli/patch_radiosity.h"
 #include "src/form_factor/area_form_factors.h"
+#include "src/scene/scene_extent.h"
 
 namespace exitance {
 namespace {
@@ -24,20 +26,36 @@ void answer_point_polygon(const nlohmann::json& question, double tolerance, Json
   result["reached"] = a.F_error <= tolerance;
 }
 
+/// Takes a polygon that exchanges, divided by 2^exponent. Returns whether it was taken: not where it has no area.
+/// Throws InvalidCase where its area is lost beside the largest coordinate (`largest`, divided likewise).
+bool add_patch(QuestionScene& scene, const Polygon& polygon, int exponent, double largest, const std::string& name) {
+  const Polygon scaled = ExactScale::scaled(polygon, exponent);
+  if (!scene.add(scaled, Role::patch, name)) return false;
+  if (!find_bad_extent(scaled, largest).empty()) {
+    throw InvalidCase(name +
+                      ": its area is nothing beside the square of the largest coordinate, less than a part in 1e50");
+  }
+  return true;
+}
+
 void answer_polygon_polygon(const nlohmann::json& what, double tolerance, Json& result) {
   const PolygonQuestion question = read_polygon_question(what);
   ExactScale scale;
-  scale.include(question.receiver);
-  scale.include(question.source);
-  for (const Obstacle& o : question.occluders) {
-    for (const Polygon& face : o.faces) scale.include(face);
-  }
+  double largest = 0;
+  const auto include = [&](const Polygon& polygon) {
+    scale.include(polygon);
+    largest = std::max(largest, extent(polygon));
+  };
+  include(question.receiver);
+  include(question.source);
+  for (const Obstacle& o : question.occluders) std::ranges::for_each(o.faces, include);
   const int exponent = scale.exponent();
+  largest = std::ldexp(largest, -exponent);
   QuestionScene scene;
-  if (!scene.add(ExactScale::scaled(question.receiver, exponent), Role::patch, "receiver")) {
+  if (!add_patch(scene, question.receiver, exponent, largest, "receiver")) {
     throw InvalidCase("receiver: it has no area");
   }
-  const bool has_source = scene.add(ExactScale::scaled(question.source, exponent), Role::patch, "source");
+  const bool has_source = add_patch(scene, question.source, exponent, largest, "source");
   scene.add(question.occluders, exponent);
   PairFormFactor f;
   if (has_source) {
@@ -65,15 +83,19 @@ struct Enclosure {
 Enclosure enclose(const CasePatches& given, const std::string& path, double tolerance) {
   Enclosure result;
   ExactScale scale;
+  double largest = 0;
   for (const CasePatch& patch : given.patches) {
-    if (!patch.absent) scale.include(patch.polygon);
+    if (patch.absent) continue;
+    scale.include(patch.polygon);
+    largest = std::max(largest, extent(patch.polygon));
   }
   result.exponent = scale.exponent();
+  largest = std::ldexp(largest, -result.exponent);
   QuestionScene scene;
   for (std::size_t p = 0; p < given.patches.size(); ++p) {
     if (given.patches[p].absent) continue;
     const std::string name = path + "patches[" + std::to_string(p) + "]";
-    if (!scene.add(ExactScale::scaled(given.patches[p].polygon, result.exponent), Role::patch, name)) {
+    if (!add_patch(scene, given.patches[p].polygon, result.exponent, largest, name)) {
       throw InvalidCase(name + ": it has no area");
     }
     result.present.push_back(p);
@@ -97,7 +119,10 @@ void answer_enclosure(const nlohmann::json& question, double tolerance, Json& re
   for (std::size_t i = 0; i < f.n; ++i) {
     const std::size_t p = enclosure.present[i];
     A[p] = std::ldexp(f.area[i], 2 * enclosure.exponent);
-    if (!std::isnormal(A[p])) throw InvalidCase("patches[" + std::to_string(p) + "]: its area is out of range");
+    if (!std::isnormal(A[p])) {
+      throw InvalidCase("patches[" + std::to_string(p) +
+                        "]: its area is out of the range of a double (1e-307 to 1e308 m^2); scale the coordinates");
+    }
     for (std::size_t j = 0; j < f.n; ++j) {
       F[p][enclosure.present[j]] = f.F[i * f.n + j];
       F_error[p][enclosure.present[j]] = f.F_error[i * f.n + j];
@@ -195,8 +220,10 @@ void answer_dynamic(const nlohmann::json& question, double tolerance, Json& resu
   for (const char* side : {"before", "after"}) {
     if (!question.contains(side)) throw InvalidCase(std::string("the key \"") + side + "\" is missing");
   }
-  const CasePatches given_before = read_patches(question["before"], "before", true);
-  const CasePatches given_after = read_patches(question["after"], "after", true);
+  CasePatches given_before = read_patches(question["before"], "before", true);
+  CasePatches given_after = read_patches(question["after"], "after", true);
+  if (!given_before.bands_in_lists) given_before.repeat_for(given_after.bands);
+  if (!given_after.bands_in_lists) given_after.repeat_for(given_before.bands);
   if (given_before.patches.size() != given_after.patches.size()) {
     throw InvalidCase("after.patches: must list the same patches as before.patches, in the same order");
   }
@@ -228,6 +255,13 @@ void answer_dynamic(const nlohmann::json& question, double tolerance, Json& resu
   result["reached"] = before.enclosure.form_factors.reached && after.enclosure.form_factors.reached;
 }
 
+/// JSON has no word for what overflowed.
+void refuse_non_finite(const Json& value, const std::string& key) {
+  if (value.is_number_float() && !std::isfinite(value.get<double>()))
+    throw InvalidCase(key + ": a result is out of the range of a double; scale the numbers of the question");
+  if (value.is_array()) std::ranges::for_each(value, [&](const Json& item) { refuse_non_finite(item, key); });
+}
+
 void answer_kind(const nlohmann::json& question, double tolerance, Json& result) {
   if (!question.is_object()) throw InvalidCase("a case must be an object");
   if (!question.contains("kind")) throw InvalidCase("the key \"kind\" is missing");
@@ -247,9 +281,12 @@ void answer_kind(const nlohmann::json& question, double tolerance, Json& result)
 Json answer_case(const nlohmann::json& question, double tolerance) {
   const Json id = question.is_object() && question.contains("id") ? Json(question["id"]) : Json(nullptr);
   try {
-    Json result{{"id", id}, {"status", "ok"}};
+    Json result = Json::object();
     answer_kind(question, tolerance, result);
-    return result;
+    for (const auto& [key, value] : result.items()) refuse_non_finite(value, key);
+    Json answered{{"id", id}, {"status", "ok"}};
+    answered.update(result);
+    return answered;
   } catch (const std::exception& wrong) {
     return {{"id", id}, {"status", "error"}, {"message", wrong.what()}};
   }

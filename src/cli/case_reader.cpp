@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/scene/material_check.h"
+
 namespace exitance {
 namespace {
 
@@ -60,8 +62,15 @@ std::vector<Vec3> read_loop(const Field& field) {
   return loop;
 }
 
+/// Fewer than three points have no area: a polygon that counts for nothing, or is refused for that.
+std::vector<Vec3> read_outer(const Field& field) {
+  std::vector<Vec3> loop = read_loop(field);
+  while (loop.size() < 3) loop.push_back(loop.empty() ? Vec3{} : loop.back());
+  return loop;
+}
+
 Polygon read_polygon(const Field& field) {
-  Polygon polygon{read_loop(field.at("polygon")), {}};
+  Polygon polygon{read_outer(field.at("polygon")), {}};
   if (field.has("holes")) {
     for (const Field& hole : field.at("holes").items()) polygon.holes.push_back(read_loop(hole));
   }
@@ -75,7 +84,7 @@ std::vector<Obstacle> read_occluders(const Field& what) {
     Obstacle obstacle;
     if (field.has("polyhedron")) {
       obstacle.solid = true;
-      for (const Field& face : field.at("polyhedron").items()) obstacle.faces.push_back({read_loop(face), {}});
+      for (const Field& face : field.at("polyhedron").items()) obstacle.faces.push_back({read_outer(face), {}});
     } else if (field.has("polygon")) {
       obstacle.faces.push_back(read_polygon(field));
     } else {
@@ -108,21 +117,36 @@ PolygonQuestion read_polygon_question(const nlohmann::json& what) {
   return {read_polygon(question.at("receiver")), read_polygon(question.at("source")), read_occluders(question)};
 }
 
+void CasePatches::repeat_for(std::size_t count) {
+  bands = count;
+  for (CasePatch& patch : patches) {
+    for (std::vector<double>* values : {&patch.E, &patch.rho}) {
+      if (values->size() == 1) values->resize(count, values->front());
+    }
+  }
+}
+
 CasePatches read_patches(const nlohmann::json& what, const std::string& path, bool with_materials) {
   CasePatches result;
   std::vector<Field> lists;
   for (const Field& field : Field(what, path).at("patches").items()) {
     CasePatch patch;
-    patch.polygon = read_polygon(field);
     if (field.has("absent")) patch.absent = field.at("absent").flag();
+    const auto is_needed = [&](const char* key) { return !patch.absent || field.has(key); };
+    if (is_needed("polygon")) patch.polygon = read_polygon(field);
     if (with_materials) {
-      patch.E = read_bands(field.at("E"));
-      patch.rho = read_bands(field.at("rho"));
+      patch.E = is_needed("E") ? read_bands(field.at("E")) : std::vector<double>{0};
+      patch.rho = is_needed("rho") ? read_bands(field.at("rho")) : std::vector<double>{0};
+      for (const double E : patch.E) {
+        if (!is_emission(std::fabs(E))) {
+          field.at("E").refuse("must be 0 or of a size from 1e-250 to 1e100, not " + nlohmann::json(E).dump());
+        }
+      }
       for (const double rho : patch.rho) {
         if (!(rho >= 0 && rho < 1)) field.at("rho").refuse("must lie in [0, 1), not " + nlohmann::json(rho).dump());
       }
       for (const char* key : {"E", "rho"}) {
-        if (field.at(key).is_array()) lists.push_back(field.at(key));
+        if (field.has(key) && field.at(key).is_array()) lists.push_back(field.at(key));
       }
     }
     result.patches.push_back(std::move(patch));
@@ -134,11 +158,7 @@ CasePatches read_patches(const nlohmann::json& what, const std::string& path, bo
       if (list.items().size() != result.bands) list.refuse("must have as many bands as the others");
     }
   }
-  for (CasePatch& patch : result.patches) {
-    for (std::vector<double>* values : {&patch.E, &patch.rho}) {
-      if (with_materials && values->size() == 1) values->resize(result.bands, values->front());
-    }
-  }
+  if (with_materials) result.repeat_for(result.bands);
   return result;
 }
 

@@ -1,6 +1,5 @@
 #include "src/cli/cases.h"
 
-#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -10,7 +9,9 @@
 #include <optional>
 
 #include "src/cli/case_answers.h"
+#include "src/cli/console.h"
 #include "src/cli/json_text.h"
+#include "src/cli/number_range.h"
 #include "src/cli/verbs.h"
 #include "src/output/whole_file.h"
 #include "src/scene/input_error.h"
@@ -26,9 +27,10 @@ class Cases {
     verb.add_option("FILE", file_, "JSON file {\"cases\": [...]}")->required();
     verb.add_option("-o,--output", output_, "JSON file for the answers; standard output without it");
     verb.add_option("--tolerance", tolerance_, "absolute error wanted of form factors")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
-    verb.add_option("--threads", threads_, "number of threads; all without it")->check(CLI::PositiveNumber);
+    verb.add_option("--threads", threads_, "number of threads; all without it")
+        ->check(whole_number_between(1, kMostThreads));
   }
 
   void run() const {
@@ -59,7 +61,7 @@ class Cases {
     }
     text += "\n]}\n";
     if (output_.empty()) {
-      fmt::print("{}", text);
+      print_results(text);
     } else {
       write_whole_file(output_, [&](std::ostream& stream) { stream << text; });
     }

@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+#include "src/cli/console.h"
+#include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/scene_options.h"
 #include "src/cli/verbs.h"
@@ -24,6 +26,9 @@ using Json = nlohmann::ordered_json;
 
 /// Front and back of a closed scene that miss 1 by as much, at some sample point, are a failed check.
 constexpr double kFailedClosure = 1e-12;
+
+/// Sample points that --closure takes at most: days of work, and a list that any memory holds.
+constexpr std::uint64_t kMostPoints = 100'000'000;
 
 /// What random sample points of a scene, of which every surface is one element, see of front and back sides.
 struct Closure {
@@ -117,10 +122,13 @@ class Check {
         verb.add_option("--closure", closure_points_,
                         "Look from so many random sample points and add up what they see; exit code 1 where front and "
                         "back of a closed scene do not fill the hemisphere")
-            ->check(CLI::PositiveNumber);
-    verb.add_option("--seed", seed_, "Of those sample points")->capture_default_str()->needs(closure);
+            ->check(whole_number_between(1, kMostPoints));
+    verb.add_option("--seed", seed_, "Of those sample points")
+        ->check(whole_number_between(0))
+        ->capture_default_str()
+        ->needs(closure);
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
-        ->check(CLI::PositiveNumber)
+        ->check(whole_number_between(1, kMostThreads))
         ->needs(closure);
     verb.footer(
         fmt::format("Exit code 1: with --closure, front and back of a closed scene miss 1 by {} or more at some sample "
@@ -140,8 +148,8 @@ class Check {
     print(scene, report, closure);
     if (!solvable) throw CLI::RuntimeError(bad_input);
     if (closure && closure->failed()) {
-      fmt::print(stderr, "exitance: the scene is closed, but front and back miss 1 by {:.3g} at some sample point\n",
-                 closure->max_defect);
+      print_message(fmt::format("the scene is closed, but front and back miss 1 by {:.3g} at some sample point",
+                                closure->max_defect));
       throw CLI::RuntimeError(check_failed);
     }
   }
@@ -152,11 +160,10 @@ class Check {
       Json json = to_json(scene, report);
       if (closure) json["closure"] = to_json(*closure);
       // Names in files need not be UTF-8.
-      fmt::print("{}\n", json.dump(1, ' ', false, Json::error_handler_t::replace));
+      print_results(json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     } else {
-      fmt::print("{}{}", in_words(scene, report), closure ? in_words(*closure) : "");
+      print_results(printable(in_words(scene, report) + (closure ? in_words(*closure) : "")));
     }
-    std::fflush(stdout);
   }
 
   SceneOptions scene_;

@@ -12,9 +12,11 @@
 #include <optional>
 #include <string>
 
+#include "src/cli/console.h"
 #include "src/cli/formfactor_report.h"
 #include "src/cli/given_options.h"
 #include "src/cli/interrupt.h"
+#include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/scene_options.h"
 #include "src/cli/verbs.h"
@@ -95,22 +97,24 @@ class FormFactor {
  public:
   explicit FormFactor(CLI::App& verb) : verb_(verb) {
     scene_.add_to(verb);
-    verb.add_option("--tolerance", pairs_.tolerance, "Absolute error wanted of form factors")
-        ->check(CLI::PositiveNumber);
+    verb.add_option("--tolerance", pairs_.tolerance, "Absolute error wanted of form factors")->check(positive_number());
     verb.add_option("--relative", pairs_.relative, "An error within this share of its form factor is good enough, too")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_between(0, 1))
         ->capture_default_str();
     verb.add_option("--patch-size", patch_size_, "Longest edge of a patch [m]; 0: surfaces as they are")
+        ->check(number_between(0))
         ->capture_default_str();
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
-        ->check(CLI::PositiveNumber);
+        ->check(whole_number_between(1, kMostThreads));
     verb.add_option("--memory-limit", memory_limit_,
                     "Memory for form factors [GiB]; all that is available unless given")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     verb.add_option("--save-every", save_every_, "Seconds of work after which finished rows are saved beside FILE")
-        ->check(CLI::NonNegativeNumber)
+        ->check(number_between(0))
         ->capture_default_str();
-    verb.add_option("--seed", seed_, "Of the pairs that are integrated again as a check")->capture_default_str();
+    verb.add_option("--seed", seed_, "Of the pairs that are integrated again as a check")
+        ->check(whole_number_between(0))
+        ->capture_default_str();
     verb.add_flag(
         "--close-rows", close_rows_,
         "Of a closed scene, write a second file (FILE with .closed before its extension) whose rows sum to 1");
@@ -172,7 +176,7 @@ class FormFactor {
     report_.warnings = scene.warnings;
     if (const std::size_t count = patches.surfaces_without_area(); count > 0)
       report_.warnings.push_back(fmt::format("{} surfaces have no area and no row", count));
-    for (const std::string& warning : report_.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& warning : report_.warnings) print_warning(warning);
     report_.closed = is_closed(scene);
     report_.only_fronts = report_.closed && sees_only_fronts(scene);
     if (close_rows_ && !report_.closed)
@@ -254,7 +258,7 @@ class FormFactor {
   void write(const MatrixRecord& record) {
     if (file_.empty()) {
       write_triplets(std::cout, record.matrix);
-      if (!std::cout.flush()) throw InputError("standard output", 0, "cannot be written");
+      print_results("");
       return;
     }
     write_matrix(file_, record);
@@ -275,15 +279,14 @@ class FormFactor {
 
   void end() const {
     if (file_.empty()) {
-      fmt::print(stderr, "{}", in_words(report_));
+      fmt::print(stderr, "{}", printable(in_words(report_)));
     } else {
-      fmt::print("{}", json_ ? to_json(report_) : in_words(report_));
-      std::fflush(stdout);
+      print_results(json_ ? to_json(report_) : printable(in_words(report_)));
     }
     std::vector<std::string> failed = failed_checks(report_);
     if (close_rows_ && !report_.rows_closed)
       failed.push_back("no scaling makes all rows sum to 1; the second file was not written");
-    for (const std::string& line : failed) fmt::print(stderr, "exitance: {}\n", line);
+    for (const std::string& line : failed) print_message(line);
     if (!failed.empty()) throw CLI::RuntimeError(check_failed);
   }
 

@@ -6,9 +6,11 @@
 #include <memory>
 #include <string>
 
+#include "src/cli/console.h"
+#include "src/cli/number_range.h"
 #include "src/cli/verbs.h"
+#include "src/output/obj.h"
 #include "src/scene/furnished_room.h"
-#include "src/scene/write_obj.h"
 
 namespace exitance {
 namespace {
@@ -18,14 +20,16 @@ class GenerateFurnishedRoom {
   explicit GenerateFurnishedRoom(CLI::App& verb) {
     verb.add_option("--polygons", polygons_, "How many polygons the room has, furniture included")
         ->required()
-        ->check(CLI::Range(100, 1000000));
-    verb.add_option("--seed", seed_, "Other numbers give other rooms")->capture_default_str();
+        ->check(whole_number_between(100, 1'000'000));
+    verb.add_option("--seed", seed_, "Other numbers give other rooms")
+        ->check(whole_number_between(0))
+        ->capture_default_str();
     verb.add_option("-o,--output", file_, "OBJ file to write; its materials stand beside it in .mtl")->required();
   }
 
   void run() const {
     write_obj(make_furnished_room(polygons_, seed_), file_);
-    fmt::print("{}: a furnished room of {} polygons, seed {}\n", file_, polygons_, seed_);
+    print_results(printable(fmt::format("{}: a furnished room of {} polygons, seed {}\n", file_, polygons_, seed_)));
   }
 
  private:

@@ -17,12 +17,22 @@ namespace {
 /// A number that overflows a double but not the reader's long double.
 constexpr std::string_view kOverflow = "1e999";
 
-/// The words that JSON lacks, outside of strings, as numbers that overflow.
-std::string without_words_for_non_finite(const std::string& text) {
+/// Lists and objects within each other. Questions need nine; functions that call themselves for each level would
+/// overflow the stack at some thousands.
+constexpr std::size_t kDeepest = 100;
+
+std::size_t line_of(const std::string& text, std::size_t position) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(position, text.size()));
+  return static_cast<std::size_t>(std::count(text.begin(), end, '\n')) + 1;
+}
+
+/// The words that JSON lacks, outside of strings, as numbers that overflow. Throws InputError on what nests too deep.
+std::string without_words_for_non_finite(const std::string& text, const std::string& path) {
   constexpr std::string_view words[] = {"NaN", "Infinity"};
   std::string result;
   result.reserve(text.size());
   bool in_string = false;
+  std::size_t depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto word = std::find_if(std::begin(words), std::end(words), [&](std::string_view w) {
       return !in_string && text[i] == w[0] && text.compare(i, w.size(), w) == 0;
@@ -37,6 +47,13 @@ std::string without_words_for_non_finite(const std::string& text) {
       result += text[++i];
     } else if (text[i] == '"') {
       in_string = !in_string;
+    } else if (!in_string && (text[i] == '[' || text[i] == '{')) {
+      if (++depth > kDeepest) {
+        throw InputError(path, line_of(text, i),
+                         "has lists and objects more than " + std::to_string(kDeepest) + " deep; flatten them");
+      }
+    } else if (!in_string && (text[i] == ']' || text[i] == '}') && depth > 0) {
+      --depth;
     }
   }
   return result;
@@ -129,12 +146,10 @@ nlohmann::json read_json(const std::string& path) {
     throw InputError(path, 0, "cannot be read; give the name of an existing JSON file");
   }
   const std::string text =
-      without_words_for_non_finite({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});
+      without_words_for_non_finite({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, path);
   Builder builder;
   if (!WideJson::sax_parse(text, &builder)) {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(builder.error_position(), text.size()));
-    const auto line = static_cast<std::size_t>(std::count(text.begin(), end, '\n')) + 1;
-    throw InputError(path, line, "is not JSON: " + reason(builder.error()));
+    throw InputError(path, line_of(text, builder.error_position()), "is not JSON: " + reason(builder.error()));
   }
   return builder.take();
 }

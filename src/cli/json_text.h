@@ -8,8 +8,8 @@ namespace exitance {
 
 /// Reads a JSON file. NaN, Infinity and -Infinity, which other programs write though JSON has no words for them, and
 /// numbers too large for a double all become an infinity, so that whoever uses the number can refuse it by its name and
-/// the rest of the file is read. Throws InputError with file and line on anything else that is not JSON, and when the
-/// file cannot be read.
+/// the rest of the file is read. Throws InputError with file and line on anything else that is not JSON, on lists
+/// and objects more than 100 deep, and when the file cannot be read.
 nlohmann::json read_json(const std::string& path);
 
 }  // namespace exitance

@@ -1,13 +1,11 @@
 // The program: one verb a file.
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <new>
 #include <stdexcept>
 
 #include "src/cli/cases.h"
+#include "src/cli/console.h"
 #include "src/cli/verbs.h"
 #include "src/output/manifest.h"
 #include "src/scene/input_error.h"
@@ -17,21 +15,29 @@ namespace {
 
 using namespace exitance;
 
-int refuse(ExitCode code, std::string message) {
-  std::ranges::replace(message, '\n', ' ');
-  fmt::print(stderr, "exitance: {}\n", message);
+int refuse(ExitCode code, std::string_view message) {
+  print_message(message);
   return code;
+}
+
+/// Parses, which runs the verb; --help and --version are answered here.
+void parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("a verb");
+  } catch (const CLI::Success& asked) {
+    app.exit(asked);
+    print_results("");
+  }
 }
 
 int run(CLI::App& app, int argc, char** argv) {
   try {
-    app.parse(argc, argv);
-    if (!app.get_subcommands().empty()) return done;
-    return refuse(usage, "a verb is needed; see exitance --help");
+    parse(app, argc, argv);
+    return done;
   } catch (const CLI::RuntimeError& ended) {
     return ended.get_exit_code();
   } catch (const CLI::ParseError& wrong) {
-    if (wrong.get_exit_code() == 0) return app.exit(wrong);  // --help, --version
     return refuse(usage, std::string(wrong.what()) + "; see exitance --help and exitance VERB --help");
   } catch (const InputError& wrong) {
     return refuse(bad_input, wrong.what());

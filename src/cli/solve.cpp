@@ -10,8 +10,10 @@
 #include <optional>
 #include <string>
 
+#include "src/cli/console.h"
 #include "src/cli/given_options.h"
 #include "src/cli/interrupt.h"
+#include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/scene_options.h"
 #include "src/cli/verbs.h"
@@ -26,6 +28,9 @@ namespace {
 
 /// A closed scene whose closure defect is above this is a failed check.
 constexpr double kLargestClosureDefect = 1e-9;
+
+/// Along the edge of a patch: what would make 2^32 points of a single one.
+constexpr std::uint64_t kMostElements = 65'535;
 
 using Clock = std::chrono::steady_clock;
 
@@ -86,25 +91,31 @@ class Solve {
         ->capture_default_str();
     verb.add_option("--form-factor-tolerance", options_.form_factor_tolerance,
                     "Error of each form factor of --receivers area")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
     verb.add_option("--visibility", visibility_, "How visibility is decided")
         ->check(CLI::IsMember({"exact"}))
         ->capture_default_str();
     verb.add_option("--patch-size", options_.mesh.patch_size, "Longest edge of a patch [m]; 0: surfaces as they are")
+        ->check(number_between(0))
         ->capture_default_str();
     verb.add_option("--elements", options_.mesh.elements_per_edge, "Elements along the edge of a patch")
+        ->check(whole_number_between(1, kMostElements))
         ->capture_default_str();
     verb.add_option("--tolerance", options_.tolerance, "Bound of the solver's error of B, relative to B max")
+        ->check(positive_number())
         ->capture_default_str();
-    verb.add_option("--shots", shots_, "Most shots of --method shoot; what is reached then is saved, exit code 4");
-    verb.add_option("--time-limit", time_limit_, "Seconds after which to end likewise")->check(CLI::PositiveNumber);
+    verb.add_option("--shots", shots_, "Most shots of --method shoot; what is reached then is saved, exit code 4")
+        ->check(whole_number_between(0));
+    verb.add_option("--time-limit", time_limit_, "Seconds after which to end likewise")->check(positive_number());
     verb.add_option("--memory-limit", memory_limit_,
                     "Memory for form factors [GiB]; all that is available unless given")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
-        ->check(CLI::PositiveNumber);
-    verb.add_option("--seed", options_.seed, "Of the pairs whose reciprocity is measured")->capture_default_str();
+        ->check(whole_number_between(1, kMostThreads));
+    verb.add_option("--seed", options_.seed, "Of the pairs whose reciprocity is measured")
+        ->check(whole_number_between(0))
+        ->capture_default_str();
     verb.add_option("-o,--output", folder_, "Folder for result.json, solution.vtp, solution.ply and image.png");
     verb.add_flag("--json", json_, "Print result.json instead of a summary");
     verb.footer(fmt::format(
@@ -123,7 +134,7 @@ class Solve {
     if (shots_ && method_ != "shoot") throw CLI::ValidationError("--shots", "needs --method shoot");
 
     const Scene scene = scene_.read();
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& warning : scene.warnings) print_warning(warning);
     std::optional<ResultFolder> folder;
     if (!folder_.empty()) folder.emplace(folder_);
     const double loading = seconds_since(start);
@@ -145,8 +156,7 @@ class Solve {
       write_report(folder->draft() / "result.json", report);
       folder->publish();
     }
-    fmt::print("{}", json_ ? to_json(report) : summary(report));
-    std::fflush(stdout);
+    print_results(json_ ? to_json(report) : printable(summary(report)));
     end(report, solution);
   }
 
@@ -171,7 +181,7 @@ class Solve {
 
   void end(const Report& report, const SceneSolution& solution) const {
     const auto with = [](ExitCode code, const std::string& message) {
-      fmt::print(stderr, "exitance: {}\n", message);
+      print_message(message);
       throw CLI::RuntimeError(code);
     };
     if (solution.stopped) {
@@ -185,8 +195,8 @@ class Solve {
     }
     if (report.closure_max_defect && !(*report.closure_max_defect <= kLargestClosureDefect + solution.closure_error)) {
       with(check_failed,
-           fmt::format("the scene is closed, but front and back miss 1 by {:.3g} at some {}", *report.closure_max_defect,
-                       report.receivers == "points" ? "sample point" : "element"));
+           fmt::format("the scene is closed, but front and back miss 1 by {:.3g} at some {}",
+                       *report.closure_max_defect, report.receivers == "points" ? "sample point" : "element"));
     }
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/special_functions/legendre.hpp>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -74,11 +75,61 @@ bool crosses(const Range& r) {
   return r.above > r.rounding && -r.below > r.rounding;
 }
 
+Vec3 middle(const Vec3& a, const Vec3& b) {
+  return a + 0.5 * (b - a);
+}
+
+SidePoint point_of(const Vec3& a, const Vec3& b, const Bend& bend, double s) {
+  const Vec3 ab = b - a;
+  if (bend.weight == 0) return {a + s * ab, ab};
+  // a + n / d, both quadratic in s.
+  const double w = bend.weight, d = 1 + 2 * (w - 1) * s * (1 - s), d_s = 2 * (w - 1) * (1 - 2 * s);
+  const Vec3 ac = w * (bend.control - a), n = 2 * s * (1 - s) * ac + s * s * ab,
+             n_s = 2 * (1 - 2 * s) * ac + 2 * s * ab;
+  return {a + (1 / d) * n, (1 / d) * (n_s - (d_s / d) * n)};
+}
+
+/// The halves of a conic from a to b.
+std::pair<Bend, Bend> halves(const Vec3& a, const Vec3& b, const Bend& bend) {
+  const double w = bend.weight, share = w / (1 + w), half = w > 0 ? std::sqrt(0.5 * (1 + w)) : 0;
+  return {{a + share * (bend.control - a), half}, {b + share * (bend.control - b), half}};
+}
+
+/// Across the bent sides; or between them by a straight line, if that can't meet them.
+std::pair<AreaCell, AreaCell> bisect_bent(const AreaCell& cell) {
+  const Vec3 &a = cell.corner[0], &b = cell.corner[1], &c = cell.corner[2],
+             &d = cell.corners == 3 ? cell.corner[2] : cell.corner[3];
+  const double along = norm(b - a) + norm(c - d), across = norm(d - a) + norm(c - b);
+  const Vec3 m = first_side(cell, 0.5).at, n = opposite_side(cell, 0.5).at;
+  const double height = std::max(norm(m - middle(a, b)), norm(n - middle(c, d)));
+  if (along >= across || 8 * height > across) {
+    const auto [one, other] = halves(a, b, cell.bend);
+    const auto [near_d, near_c] = halves(d, c, cell.opposite);
+    return {{{a, m, n, d}, cell.corners, one, near_d}, {{m, b, c, n}, cell.corners, other, near_c}};
+  }
+  const Vec3 p = middle(a, d), q = middle(b, c);
+  if (cell.corners == 3) return {{{a, b, q, p}, 4, cell.bend}, {{p, q, c, p}, 3}};
+  return {{{a, b, q, p}, 4, cell.bend}, {{p, q, c, d}, 4, {}, cell.opposite}};
+}
+
 }  // namespace
 
 double AreaCell::area() const {
+  if (!is_straight()) {
+    std::vector<WeightedPoint> points;
+    gauss_points(*this, 4, points);
+    return std::accumulate(points.begin(), points.end(), 0.0,
+                           [](double sum, const WeightedPoint& p) { return sum + p.weight; });
+  }
   const Vec3 a = cross(corner[1] - corner[0], corner[2] - corner[0]);
   return 0.5 * (corners == 3 ? norm(a) : norm(a) + norm(cross(corner[2] - corner[0], corner[3] - corner[0])));
+}
+
+SidePoint first_side(const AreaCell& cell, double s) {
+  return point_of(cell.corner[0], cell.corner[1], cell.bend, s);
+}
+SidePoint opposite_side(const AreaCell& cell, double s) {
+  return point_of(cell.corners == 3 ? cell.corner[2] : cell.corner[3], cell.corner[2], cell.opposite, s);
 }
 
 std::vector<AreaCell> cells_of(std::span<const Vec3> loop) {
@@ -117,8 +168,8 @@ std::vector<AreaCell> cut(const AreaCell& cell, const CutPlane& plane) {
 }
 
 std::pair<AreaCell, AreaCell> bisect(const AreaCell& cell) {
-  const auto middle = [](const Vec3& a, const Vec3& b) { return a + 0.5 * (b - a); };
   const auto& c = cell.corner;
+  if (!cell.is_straight()) return bisect_bent(cell);
   if (cell.corners == 3) {
     int longest = 0;
     double length = 0;
@@ -144,14 +195,13 @@ std::pair<AreaCell, AreaCell> bisect(const AreaCell& cell) {
 void gauss_points(const AreaCell& cell, int order, std::vector<WeightedPoint>& points) {
   points.clear();
   const Rule& rule = rule_of(order);
-  const Vec3 &a = cell.corner[0], &b = cell.corner[1], &c = cell.corner[2],
-             &d = cell.corners == 3 ? cell.corner[2] : cell.corner[3];
-  const Vec3 ab = b - a, ad = d - a, bow = (c - b) - ad;
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const SidePoint from = first_side(cell, rule.node[i]), to = opposite_side(cell, rule.node[i]);
+    const Vec3 across = to.at - from.at, change = to.along - from.along;
     for (std::size_t j = 0; j < rule.node.size(); ++j) {
-      const double s = rule.node[i], t = rule.node[j];
-      const Vec3 along_s = ab + t * bow, along_t = ad + s * bow;
-      points.push_back({a + s * ab + t * along_t, rule.weight[i] * rule.weight[j] * norm(cross(along_s, along_t))});
+      const double t = rule.node[j];
+      const Vec3 along = from.along + t * change;
+      points.push_back({from.at + t * across, rule.weight[i] * rule.weight[j] * norm(cross(along, across))});
     }
   }
 }

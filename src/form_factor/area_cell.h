@@ -17,19 +17,37 @@ struct CutPlane {
   double at(const Vec3& v) const { return dot(normal, v - point); }
 };
 
-/// A convex triangle or quadrilateral, counter-clockwise seen from the front.
+/// What bends a side into a conic: where the tangents at its ends meet, and the weight of that point in the rational
+/// quadratic curve (Farin 2002). Weight 0: the side is straight.
+struct Bend {
+  Vec3 control;
+  double weight = 0;
+};
+
+/// A triangle or quadrilateral, counter-clockwise seen from the front: convex, but for its first side, and the one
+/// opposite of it, which may be conics.
 struct AreaCell {
   std::array<Vec3, 4> corner;
   int corners = 3;
+  Bend bend{};      ///< of the side from corner 0 to 1
+  Bend opposite{};  ///< of the side from corner 3 to 2; a triangle has none
 
+  bool is_straight() const { return bend.weight == 0 && opposite.weight == 0; }
   std::span<const Vec3> loop() const { return {corner.data(), static_cast<std::size_t>(corners)}; }
   double area() const;
 };
 
+/// A point of a side, and the derivative there; s from 0 to 1.
+struct SidePoint {
+  Vec3 at, along;
+};
+SidePoint first_side(const AreaCell& cell, double s);     ///< from corner 0 to 1
+SidePoint opposite_side(const AreaCell& cell, double s);  ///< from corner 3 to 2; of a triangle, its last corner
+
 /// Cuts a convex loop into cells.
 std::vector<AreaCell> cells_of(std::span<const Vec3> loop);
 
-/// Cuts a cell by a plane; nothing where the plane leaves it whole up to rounding.
+/// Cuts a straight cell by a plane; nothing where the plane leaves it whole up to rounding.
 std::vector<AreaCell> cut(const AreaCell& cell, const CutPlane& plane);
 
 /// Whether the plane has part of a convex loop on each side, by more than rounding: then cut() would cut.
@@ -43,9 +61,9 @@ struct WeightedPoint {
   double weight = 0;  ///< all weights of a rule sum to the cell's area
 };
 
-/// Product Gauss rule of 2 … kHighestOrder points along each side. The square is mapped bilinearly onto the cell; a
-/// triangle is a quadrilateral with a double corner. All points lie in the cell's interior. Point i · order + j has
-/// place i along the one side of the square and j along the other.
+/// Product Gauss rule of 2 … kHighestOrder points along each side. The square is mapped onto the cell by straight lines
+/// from its first side to the opposite one; a triangle is a quadrilateral with a double corner. All points lie in the
+/// cell's interior. Point i · order + j has place i along the one side of the square and j along the other.
 void gauss_points(const AreaCell& cell, int order, std::vector<WeightedPoint>& points);
 
 inline constexpr int kHighestOrder = 12;

@@ -3,18 +3,28 @@
 #include <algorithm>
 #include <numeric>
 
+#include "src/form_factor/crossing_pole.h"
+
 namespace exitance {
 namespace {
 
 /// Orders of a cell's first rule, which only finds out whether anything is seen, of the next one at least, and of that
 /// of halves.
-constexpr int kScoutOrder = 2, kFirstOrder = 4, kOrderOfHalves = 5;
-/// Likewise, where events of three edges may cross the cell.
-constexpr int kFirstOrderAcross = 5;
+constexpr int kScoutOrder = 2, kFirstOrder = 4, kOrderOfHalves = 5, kSureOrder = 8;
 /// So many cells are cut along events before any of them is measured.
 constexpr std::size_t kCellsCutFirst = 400;
 /// What a cell with uncut events may hide from its sample points, as a share of what could be seen at most.
 constexpr double kUnnoticed = 4e-3;
+/// Part of the difference of what a cell's points see that its integral may be wrong by when they see different
+/// outlines.
+constexpr double kMixed = 3e-2;
+/// A rule's error is no more than so many times what it differs from the one before.
+constexpr double kDifference = 3;
+/// What a cell's first rule may err by, as a share of what its corners say otherwise, and of the difference of what its
+/// points see.
+constexpr double kCorners = 0.5, kSpread = 2e-2;
+/// How far inside a cell its corners are looked from, as a share of the way to the middle.
+constexpr double kInset = 1e-3;
 /// Proven error of a point's value beyond which extended precision is asked: this, or what the cell's share of the
 /// tolerance allows. Cells near a contact are tiny, and there double precision proves little.
 constexpr double kPointTolerance = 1e-13, kCellShare = 1e-2;
@@ -26,8 +36,7 @@ constexpr std::uint64_t kExtendedCost = 5;
 ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& receiver, const Source& source,
                                        std::span<const std::uint32_t> items, double most)
     : soup_(&soup), receiver_(receiver), source_(source), items_(items), most_(most) {
-  events_ = visual_events(soup, receiver, source, items, complete_);
-  analytic_ = is_one_convex_body(soup, items);
+  events_ = visual_events(soup, receiver, source, items);
   const std::vector<Vec3> loop = corners_of(soup, receiver);
   find_contacts();
   std::vector<AreaCell> shapes;
@@ -46,23 +55,37 @@ ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& re
 void ObstructedExchange::find_contacts() {
   const Plane& plane = soup_->facets()[receiver_.facet].plane;
   const double size = norm(plane.normal);
-  const auto add = [&](const Vec3& v) {
-    const Vec3 w = v - plane.origin;
-    if (std::fabs(dot(plane.normal, w)) <= 1e-12 * size * norm(w)) contacts_.push_back(v);
+  const auto add_edge = [&](const Vec3& a, const Vec3& b) {
+    const double at_a = dot(plane.normal, a - plane.origin), at_b = dot(plane.normal, b - plane.origin);
+    if (std::fabs(at_a) <= 1e-12 * size * norm(a - plane.origin)) {
+      contacts_.push_back(a);
+    } else if (at_a * at_b < 0 && std::fabs(at_b) > 1e-12 * size * norm(b - plane.origin)) {
+      contacts_.push_back(a + (at_a / (at_a - at_b)) * (b - a));
+    }
   };
-  for (const Vec3& v : corners_of(*soup_, source_)) add(v);
+  const auto add_loop = [&](const auto& loop, const auto& point) {
+    for (std::size_t k = 0; k < loop.size(); ++k) add_edge(point(loop[k]), point(loop[(k + 1) % loop.size()]));
+  };
+  add_loop(corners_of(*soup_, source_), [](const Vec3& v) { return v; });
   const auto facets = static_cast<std::uint32_t>(soup_->facets().size());
+  const auto add_facet = [&](std::uint32_t f) {
+    add_loop(soup_->corners(soup_->facets()[f]), [](const Corner& c) { return c.at; });
+  };
   for (const std::uint32_t item : items_) {
     if (item < facets) {
-      for (const Corner& c : soup_->corners(soup_->facets()[item])) add(c.at);
+      add_facet(item);
     } else {
-      for (const std::uint32_t v : soup_->shells()[item - facets].vertices) add(soup_->vertices()[v]);
+      for (const std::uint32_t f : soup_->shells()[item - facets].facets) add_facet(f);
     }
   }
 }
 
 /// Appends the cell; if it touches contacts, as triangles that have one of them at their last corner or none at all.
 void ObstructedExchange::add_about_contacts(const AreaCell& shape, std::vector<AreaCell>& shapes) const {
+  if (!shape.is_straight()) {
+    shapes.push_back(shape);
+    return;
+  }
   const auto loop = shape.loop();
   const std::size_t n = loop.size();
   const double near = 1e-12 * (norm(loop[1] - loop[0]) + norm(loop[2] - loop[1]));
@@ -101,39 +124,231 @@ void ObstructedExchange::add_about_contacts(const AreaCell& shape, std::vector<A
   }
 }
 
+PointFormFactor ObstructedExchange::look(Viewpoint& view, const Vec3& from, double tolerance) {
+  const std::uint64_t extended_before = view.extended_count();
+  view.look_from({from, soup_->facets()[receiver_.facet].plane.normal, receiver_.facet});
+  const PointFormFactor f = view.form_factor(source_, items_, tolerance);
+  points_ += 1 + kExtendedCost * (view.extended_count() - extended_before);
+  return f;
+}
+
+std::uint64_t ObstructedExchange::outline_of(const Viewpoint& view) const {
+  std::uint64_t outline = view.outline();
+  for (auto same = same_.find(outline); same != same_.end(); same = same_.find(outline)) outline = same->second;
+  return outline;
+}
+
+ObstructedExchange::Sighting ObstructedExchange::sight(Viewpoint& view, const Vec3& from) {
+  const PointFormFactor f = look(view, from, 1);
+  if (f.side != Side::front) return {from, 0, 0};
+  return {from, f.F, outline_of(view)};
+}
+
+/// A cell's corners lie on events; what counts is what is seen just inside.
+void ObstructedExchange::sight_corners(Viewpoint& view, const AreaCell& shape, std::vector<Sighting>& sightings) {
+  Vec3 middle;
+  const double share = 1.0 / shape.corners;
+  for (const Vec3& v : shape.loop()) middle = middle + share * v;
+  if (!shape.is_straight()) middle = 0.5 * (first_side(shape, 0.5).at + opposite_side(shape, 0.5).at);
+  for (const Vec3& v : shape.loop()) sightings.push_back(sight(view, v + kInset * (middle - v)));
+}
+
 void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double tolerance) {
+  const double before = cell.order > 0 ? cell.integral : INFINITY;
   cell.order = order;
   gauss_points(cell.shape, cell.order, scratch_);
-  const Vec3& normal = soup_->facets()[receiver_.facet].plane.normal;
   const double area = cell.shape.area();
   const double point_tolerance = std::max(kPointTolerance, kCellShare * tolerance / area);
-  const std::uint64_t extended_before = view.extended_count();
   weighted_.clear();
   cell.integral = cell.point_error = 0;
+  const bool compare = cell.uncut.empty();
+  std::uint64_t outline = 0;
+  double least = 1, greatest = 0;
   for (const WeightedPoint& p : scratch_) {
-    view.look_from({p.point, normal, receiver_.facet});
-    const PointFormFactor f = view.form_factor(source_, items_, point_tolerance);
-    const double F = f.side == Side::front ? f.F : 0;
+    const PointFormFactor f = look(view, p.point, point_tolerance);
+    const bool front = f.side == Side::front;
+    const double F = front ? f.F : 0;
     weighted_.push_back(p.weight * F);
     cell.integral += p.weight * F;
-    if (f.side == Side::front) cell.point_error += p.weight * f.error;
+    if (front) cell.point_error += p.weight * f.error;
+    least = std::min(least, F);
+    greatest = std::max(greatest, F);
+    if (compare) {
+      const std::uint64_t now = front ? outline_of(view) : 0;
+      cell.mixed = cell.mixed || (&p != scratch_.data() && now != outline);
+      if (&p == scratch_.data()) outline = now;
+    }
   }
-  points_ += scratch_.size() + kExtendedCost * (view.extended_count() - extended_before);
   // Rounding: of each weight and product, and of the sum.
   cell.point_error += (16 + static_cast<double>(scratch_.size())) * kRoundoff * cell.integral;
   const Truncation truncation = truncation_of(weighted_, cell.order);
-  cell.error = analytic_ ? truncation.error : std::max(truncation.error, 0.5 * truncation.last);
+  // The rule before erred by what the two differ; this one errs less.
+  cell.error = std::min(truncation.error, kDifference * std::fabs(cell.integral - before));
   cell.fall = truncation.fall;
-  // Four points tell little of what is seen, but where each of them sees nothing nothing is seen.
-  if (cell.order == kScoutOrder && cell.integral > 0) {
-    cell.error = cell.integral;
+  if (order == kScoutOrder) {
+    sightings_.clear();
+    sight_corners(view, cell.shape, sightings_);
+    double mean = 0;
+    for (const Sighting& s : sightings_) {
+      cell.mixed = cell.mixed || (compare && s.outline != outline);
+      mean += s.F / static_cast<double>(sightings_.size());
+      least = std::min(least, s.F);
+      greatest = std::max(greatest, s.F);
+    }
+    // Four points tell little, but what the corners see differs from them by more than they err.
+    cell.error = kCorners * std::fabs(mean * area - cell.integral) + kSpread * (greatest - least) * area;
     cell.fall = std::clamp(cell.fall, 0.05, 0.3);
   }
-  if (!cell.uncut.empty() || !complete_) cell.error += kUnnoticed * most_ * area;
+  if (order > kScoutOrder && compare && !cell.mixed) {
+    const PoleError poles = pole_error(view.seen_edges(), cell.shape, order);
+    if (poles.error > cell.error) cell.fall = std::max(cell.fall, poles.fall);
+    cell.error += poles.error;
+  }
+  if (cell.mixed) cell.error = std::max(cell.error, truncation.last + kMixed * (greatest - least) * area);
+  if (cell.mixed && greatest == 0) cell.error = kUnnoticed * most_ * area;
+  if (!cell.uncut.empty()) cell.error += kUnnoticed * most_ * area;
+}
+
+/// Of the events that are known, straight ones first: which side of it a point is on.
+double ObstructedExchange::side_of_event(std::uint32_t e, const Vec3& x) const {
+  if (e < events_.size()) return events_[e].plane.at(x);
+  const EdgeEvent& event = found_[e - events_.size()];
+  return event.plane() ? event.plane()->at(x) : event.at(x);
+}
+std::vector<AreaCell> ObstructedExchange::cut_along(std::uint32_t e, const AreaCell& shape) const {
+  if (e < events_.size()) return shape.is_straight() ? cut(shape, events_[e].plane) : std::vector<AreaCell>{};
+  const EdgeEvent& event = found_[e - events_.size()];
+  return event.plane() && shape.is_straight() ? cut(shape, *event.plane()) : cut(shape, event);
+}
+
+/// The event that happens between two points of different outlines, the first that is met from there on; found by
+/// halving the way.
+std::optional<std::uint32_t> ObstructedExchange::find_event(Viewpoint& view, Sighting here, Sighting there) {
+  const Vec3 start = here.point, end = there.point;
+  constexpr int kHalvings = 14, kTurns = 12;
+  for (int k = 0; k < kHalvings; ++k) {
+    const Sighting middle = sight(view, here.point + 0.5 * (there.point - here.point));
+    (middle.outline == here.outline ? here : there) = middle;
+  }
+  const Vec3 step = 1e-2 * (end - start);
+  const auto happens_here = [&](std::uint32_t e) {
+    return side_of_event(e, start) * side_of_event(e, end) < 0 &&
+           side_of_event(e, here.point - step) * side_of_event(e, there.point + step) < 0;
+  };
+  for (std::uint32_t e = 0; e < events_.size() + found_.size(); ++e) {
+    if (happens_here(e)) return e;
+  }
+  sight(view, here.point);
+  const std::vector<SeenEdge> from_here = view.seen_edges();
+  sight(view, there.point);
+  const std::vector<SeenEdge> from_there = view.seen_edges();
+  for (const EdgeEvent& event : events_between(from_here, from_there)) {
+    found_.push_back(event);
+    const auto e = static_cast<std::uint32_t>(events_.size() + found_.size() - 1);
+    if (happens_here(e)) return e;
+    found_.pop_back();
+  }
+  // Edges that coincide but for rounding take turns.
+  bool turned = false;
+  for (int k = 0; k <= kTurns; ++k) {
+    const Vec3 x = here.point + (2.0 * k / kTurns - 1) * 4 * step;
+    const std::uint64_t outline = sight(view, x).outline;
+    if (turned && outline == here.outline) {
+      same_.emplace(std::max(here.outline, there.outline), std::min(here.outline, there.outline));
+      break;
+    }
+    turned = turned || outline == there.outline;
+  }
+  return {};
+}
+
+/// Events that tell the outlines that a mixed cell's points see from each other.
+std::vector<std::uint32_t> ObstructedExchange::events_in(Viewpoint& view, const Cell& cell) {
+  std::vector<WeightedPoint> places;
+  gauss_points(cell.shape, std::clamp(cell.order, 3, 5), places);
+  std::vector<Sighting> sightings;
+  for (const WeightedPoint& p : places) sightings.push_back(sight(view, p.point));
+  sight_corners(view, cell.shape, sightings);
+  std::vector<std::uint64_t> outlines;
+  for (const Sighting& s : sightings) {
+    if (std::ranges::find(outlines, s.outline) == outlines.end()) outlines.push_back(s.outline);
+  }
+  std::vector<std::uint32_t> candidates;
+  for (std::uint32_t e = 0; e < events_.size() + found_.size(); ++e) {
+    if (e >= events_.size() || events_[e].concerns(cell.shape.loop())) candidates.push_back(e);
+  }
+  constexpr std::size_t kOutlines = 5;
+  std::vector<std::uint32_t> events;
+  for (std::size_t k = 1; k < std::min(outlines.size(), kOutlines); ++k) {
+    // Two points of the first outline and of this one, as near each other as can be.
+    const Sighting *here = nullptr, *there = nullptr;
+    double nearest = INFINITY;
+    for (const Sighting& s : sightings) {
+      for (const Sighting& t : sightings) {
+        if (s.outline == t.outline || t.outline != outlines[k] ||
+            std::ranges::find(outlines, s.outline) - outlines.begin() > static_cast<std::ptrdiff_t>(k)) {
+          continue;
+        }
+        const double apart = norm(t.point - s.point);
+        if (apart >= nearest) continue;
+        nearest = apart;
+        here = &s;
+        there = &t;
+      }
+    }
+    const auto separates = [&](std::uint32_t e) {
+      const double one = side_of_event(e, here->point);
+      return std::ranges::all_of(sightings, [&](const Sighting& s) {
+        return (s.outline != here->outline || side_of_event(e, s.point) * one > 0) &&
+               (s.outline != there->outline || side_of_event(e, s.point) * one < 0);
+      });
+    };
+    const auto known = std::ranges::find_if(candidates, separates);
+    std::optional<std::uint32_t> event;
+    if (known != candidates.end()) {
+      event = *known;
+    } else {
+      event = find_event(view, *here, *there);
+      if (event) candidates.push_back(*event);
+    }
+    if (event && std::ranges::find(events, *event) == events.end()) events.push_back(*event);
+  }
+  return events;
+}
+
+/// A mixed cell, cut between what its points see; halved where that is too much for one cut.
+std::vector<AreaCell> ObstructedExchange::separate(Viewpoint& view, const Cell& cell) {
+  const std::vector<std::uint32_t> events = events_in(view, cell);
+  const auto is_straight = [&](std::uint32_t e) { return e < events_.size() || found_[e - events_.size()].plane(); };
+  if (cell.shape.is_straight()) {
+    for (const std::uint32_t e : events) {
+      if (!is_straight(e)) continue;
+      if (auto parts = cut_along(e, cell.shape); !parts.empty()) return parts;
+    }
+  }
+  for (const std::uint32_t e : events) {
+    // Events that cross each other need smaller cells first.
+    auto parts = cut_along(e, cell.shape);
+    if (parts.empty()) continue;
+    const bool apart = std::ranges::all_of(events, [&](std::uint32_t other) {
+      double sign = 0;
+      for (int k = 0; k <= 4 && other != e; ++k) {
+        const AreaCell& beside = parts[0];
+        const double value =
+            side_of_event(other, (cell.shape.is_straight() ? first_side : opposite_side)(beside, 0.02 + 0.24 * k).at);
+        if (value * sign < 0) return false;
+        sign = value;
+      }
+      return true;
+    });
+    if (apart) return parts;
+  }
+  const auto [one, other] = bisect(cell.shape);
+  return {one, other};
 }
 
 /// The cell cut along the event that divides it most evenly; without events, halved.
-std::vector<ObstructedExchange::Cell> ObstructedExchange::parts_of(const Cell& cell) const {
+std::vector<ObstructedExchange::Cell> ObstructedExchange::parts_of(Viewpoint* view, const Cell& cell) {
   std::vector<AreaCell> shapes;
   std::uint32_t along = kNone;
   double evenness = -1;
@@ -153,6 +368,8 @@ std::vector<ObstructedExchange::Cell> ObstructedExchange::parts_of(const Cell& c
   if (along != kNone) {
     shapes = cut(cell.shape, events_[along].plane);
     if (shapes.empty()) shapes = {cell.shape};  // what is cut off has no area in double precision
+  } else if (cell.mixed) {
+    shapes = separate(*view, cell);
   } else {
     const auto [one, other] = bisect(cell.shape);
     shapes = {one, other};
@@ -178,7 +395,7 @@ void ObstructedExchange::cut_all() {
       ++first;
       continue;
     }
-    std::vector<Cell> parts = parts_of(cells_[first]);
+    std::vector<Cell> parts = parts_of(nullptr, cells_[first]);
     cells_[first] = std::move(parts[0]);
     for (std::size_t k = 1; k < parts.size(); ++k) cells_.push_back(std::move(parts[k]));
   }
@@ -196,7 +413,7 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
     started_ = true;
     cut_all();
     for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-      measure(view, cells_[c], analytic_ ? kScoutOrder : kFirstOrderAcross, tolerance);
+      measure(view, cells_[c], kScoutOrder, tolerance);
       running_error_ += cells_[c].error + cells_[c].point_error;
       push(c);
     }
@@ -215,12 +432,15 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
          ++order) {
       left *= old.fall * old.fall;
     }
+    // The rules of lowest order tell little of how the others do.
+    if (order > kHighestOrder && old.order < kSureOrder) order = kSureOrder;
     std::vector<Cell> parts;
-    if (old.uncut.empty() && order <= kHighestOrder) {
+    if (old.uncut.empty() && !old.mixed && order <= kHighestOrder) {
       parts.push_back(std::move(cells_[worst]));
     } else {
-      parts = parts_of(old);
-      order = old.uncut.empty() ? kOrderOfHalves : kFirstOrder;
+      const bool known = old.uncut.empty() && !old.mixed;
+      parts = parts_of(&view, Cell(old));
+      order = known ? kOrderOfHalves : kScoutOrder;
     }
     for (std::size_t k = 0; k < parts.size(); ++k) {
       measure(view, parts[k], order, tolerance);

@@ -18,6 +18,22 @@ double most(const RadiatorFacet& from, const RadiatorFacet& to) {
   return std::min(1.0, 1.01 * to.area / (boost::math::constants::pi<double>() * distance * distance));
 }
 
+/// Whether two facets lie in one plane but for the rounding of their coordinates, as a box on a floor does when both
+/// are turned. Between them is no gap that could be told from none.
+bool lie_in_one_plane(const RadiatorFacet& a, const RadiatorFacet& b) {
+  constexpr double kRounding = 0x1p-48;
+  double size = 0;
+  for (const auto* loop : {&a.loop, &b.loop}) {
+    for (const Vec3& v : *loop) size = std::max({size, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  }
+  const auto lies_in = [&](const RadiatorFacet& one, const RadiatorFacet& other) {
+    const double most = kRounding * size * norm(other.normal);
+    return std::ranges::all_of(one.loop,
+                               [&](const Vec3& v) { return std::fabs(dot(other.normal, v - other.loop[0])) <= most; });
+  };
+  return lies_in(a, b) && lies_in(b, a);
+}
+
 }  // namespace
 
 ExchangeScene::ExchangeScene(const PolygonSoup& soup) : soup_(&soup) {
@@ -62,6 +78,7 @@ PairIntegrator::PairIntegrator(const ExchangeScene& scene) : scene_(scene), shaf
 PairIntegrator::Exchanged PairIntegrator::exchange(const ExchangeScene::Piece& a, const ExchangeScene::Piece& b,
                                                    double tolerance, double needed, const PairOptions& options,
                                                    std::uint64_t& points) {
+  if (lie_in_one_plane(a.radiator.facets()[0], b.radiator.facets()[0])) return {};
   shaft_.reset({a.source.facet, a.source.loop}, {b.source.facet, b.source.loop});
   if (!shaft_.face_each_other()) return {};
   const Shaft::Overlap overlap = shaft_.find_occluders(items_);

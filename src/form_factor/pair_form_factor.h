@@ -67,7 +67,7 @@ class PairIntegrator {
   explicit PairIntegrator(const ExchangeScene& scene);
 
   /// F from patch i to patch j and back; i = j: what a bent patch sees of itself.
-  ///  - Facing away, decided exactly: 0 ± 0.
+  ///  - Facing away, decided exactly: 0 ± 0. In one plane, though rounding may have left a gap: likewise.
   ///  - Open, decided exactly (nothing reaches into the shaft of both): the contour integral, without a point of view.
   ///  - Blocked, decided exactly for one convex occluder: 0 ± 0; behind several together it counts as partial.
   ///  - Partial: by ObstructedExchange, over the patch on which fewer visual events lie.

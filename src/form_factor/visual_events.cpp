@@ -162,7 +162,7 @@ std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& piece) {
 }
 
 std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& receiver, const Source& source,
-                                       std::span<const std::uint32_t> items, bool& complete) {
+                                       std::span<const std::uint32_t> items) {
   EventCollector events(soup, receiver);
   events.plane_of(source.facet);
   for (const std::uint32_t t : soup.coplanar(receiver.facet)) {
@@ -188,8 +188,7 @@ std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& re
     vertices += between.back().vertices.size();
     edges += between.back().edges.size();
   }
-  complete = vertices * edges <= kOccluderEvents;
-  if (complete) {
+  if (vertices * edges <= kOccluderEvents) {
     for (std::size_t i = 0; i < between.size(); ++i) {
       for (std::size_t j = 0; j < between.size(); ++j) {
         if (i != j) events.between(between[i], between[j], true);
@@ -197,29 +196,6 @@ std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& re
     }
   }
   return events.take();
-}
-
-bool is_one_convex_body(const PolygonSoup& soup, std::span<const std::uint32_t> items) {
-  constexpr std::size_t kMost = 64;
-  if (items.size() == 1) return true;
-  if (items.size() > kMost || items.back() >= soup.facets().size()) return false;
-  StageCounts counts;
-  for (const std::uint32_t t : items) {
-    for (const std::uint32_t other : items) {
-      for (const Corner& c : soup.corners(soup.facets()[other])) {
-        if (other != t && side_of(soup.facets()[t].plane, c.at, counts) > 0) return false;
-      }
-    }
-  }
-  std::vector<std::uint32_t> reached{items.front()};
-  for (std::size_t k = 0; k < reached.size(); ++k) {
-    for (const Corner& c : soup.corners(soup.facets()[reached[k]])) {
-      if (std::ranges::binary_search(items, c.neighbour) && std::ranges::find(reached, c.neighbour) == reached.end()) {
-        reached.push_back(c.neighbour);
-      }
-    }
-  }
-  return reached.size() == items.size();
 }
 
 }  // namespace exitance

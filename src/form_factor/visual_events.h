@@ -27,13 +27,8 @@ std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& piece);
 /// Events on the receiver of a source and of what stands between them, items of the soup's index: planes of the
 /// surfaces themselves, contacts in the receiver's plane, a vertex of the one against an edge of the other, and
 /// occluders against each other; each line once, but for those that differ in where they matter. Events of three edges
-/// are none of these, and curved. `complete`: false where there were too many occluders to look at all pairs of them.
+/// are none of these, and curved; nor are those of occluders against each other where there are too many pairs of them.
 std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& receiver, const Source& source,
-                                       std::span<const std::uint32_t> items, bool& complete);
-
-/// Whether the items are one convex shell, or facets that hang together as part of the surface of one convex body. Then
-/// no line touches three edges, of it and of a convex source, without meeting a vertex: there are no events of three
-/// edges. False where there are too many to look at.
-bool is_one_convex_body(const PolygonSoup& soup, std::span<const std::uint32_t> items);
+                                       std::span<const std::uint32_t> items);
 
 }  // namespace exitance

@@ -15,6 +15,8 @@ namespace fs = std::filesystem;
 ResultFolder::ResultFolder(fs::path folder)
     : folder_(std::move(folder)), draft_(folder_ / (".draft." + std::to_string(getpid()))) {
   std::error_code failed;
+  for (fs::path path = fs::absolute(folder_); !fs::exists(path, failed); path = path.parent_path())
+    made_.push_back(path);
   fs::create_directories(draft_, failed);
   if (failed) {
     throw InputError(folder_.string(), 0,
@@ -25,12 +27,18 @@ ResultFolder::ResultFolder(fs::path folder)
 ResultFolder::~ResultFolder() {
   std::error_code ignored;
   fs::remove_all(draft_, ignored);
-  fs::remove(folder_, ignored);  // only if it is empty
+  for (const fs::path& folder : made_) fs::remove(folder, ignored);  // only if it is empty
 }
 
 void ResultFolder::publish() const {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(draft_)) files.push_back(entry.path());
+  for (const fs::path& file : files) {
+    const fs::path target = folder_ / file.filename();
+    if (fs::is_directory(fs::symlink_status(target)))
+      throw InputError(target.string(), 0,
+                       "is a folder where a result is to go; nothing was written; remove or rename it");
+  }
   for (const fs::path& file : files) {
     std::error_code failed;
     fs::rename(file, folder_ / file.filename(), failed);

@@ -11,7 +11,8 @@ namespace exitance {
 void write_whole_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write) {
   const Draft draft(path);
   errno = 0;
-  std::ofstream stream(draft.path(), std::ios::binary | std::ios::trunc);
+  // Of a file that is written directly, what stands there already is not ours.
+  std::ofstream stream(draft.path(), std::ios::binary | (draft.is_direct() ? std::ios::app : std::ios::trunc));
   if (!stream) draft.refuse(std::strerror(errno));
   write(stream);
   errno = 0;

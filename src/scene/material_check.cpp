@@ -51,10 +51,10 @@ void refuse_out_of_range(const Material& m) {
         fmt::format("material '{}' has reflectance {}, which must be at least 0 and below 1; lower it", m.name, rho));
   }
   for (const double E : m.E) {
-    if (E >= 0 && std::isfinite(E)) continue;
-    throw InputError(
-        m.file, m.line,
-        fmt::format("material '{}' has emission {}, which must be at least 0 and finite; correct it", m.name, E));
+    if (is_emission(E)) continue;
+    throw InputError(m.file, m.line,
+                     fmt::format("material '{}' has emission {}, which must be 0 or from {:.0e} to {:.0e}; correct it",
+                                 m.name, E, kSmallestEmission, kLargestEmission));
   }
 }
 
@@ -69,6 +69,10 @@ void broadcast(std::vector<double>& values, std::uint32_t bands, const Material&
 }
 
 }  // namespace
+
+bool is_emission(double E) {
+  return E == 0 || (E >= kSmallestEmission && E <= kLargestEmission);
+}
 
 double to_exitance(double emission, Emission meaning) {
   return meaning == Emission::radiance ? std::numbers::pi * emission : emission;

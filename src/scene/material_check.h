@@ -11,12 +11,17 @@ enum class Emission {
   radiance   ///< L [W/(m² sr)]: E = π L for a diffuse emitter
 };
 
+/// Emissions other than 0 that can be computed with [W/m²]: no radiosity and no power overflows or loses its digits.
+inline constexpr double kSmallestEmission = 1e-250, kLargestEmission = 1e100;
+
+bool is_emission(double E);
+
 double to_exitance(double emission, Emission meaning);
 
 /// Drops materials that no surface uses; gives those without rho 0.5 and those without E 0, each time with a warning
 /// where that was not said on purpose; sets scene.bands to the longest list of any material (at least `bands`) and
-/// repeats single numbers for all bands. Throws InputError for rho outside [0, 1) and E negative or not finite (unless
-/// keep_faults), and for lists of different lengths.
+/// repeats single numbers for all bands. Throws InputError for rho outside [0, 1) and E that is_emission does not hold
+/// for (unless keep_faults), and for lists of different lengths.
 void settle_materials(Scene& scene, std::uint32_t bands, bool keep_faults);
 
 }  // namespace exitance

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "geometry/radiator.h"
 #include "src/scene/input_error.h"
 
 namespace exitance {
@@ -15,6 +16,9 @@ namespace {
 /// A point this near to a cutting line, relative to the size of what is cut, counts as on it: where a grid line meets a
 /// vertex up to rounding, no sliver arises. The point itself stays where it is, so that pieces always tile exactly.
 constexpr double kOnLine = 1e-9;
+
+/// A facet narrower than this share of its coordinates is a needle: points on it cannot be told from points on a line.
+constexpr double kNeedle = 0x1p-40;
 
 bool lexicographically_less(const Vec3& a, const Vec3& b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
@@ -38,18 +42,25 @@ Vec3 centroid(std::span<const Vec3> loop) {
   Vec3 moment;
   double area = 0;
   for (std::size_t i = 2; i < loop.size(); ++i) {
-    const Vec3 a = loop[i - 1] - loop[0], b = loop[i] - loop[0];
-    const double weight = norm(cross(a, b));
-    moment = moment + weight * (a + b);
+    const double weight = doubled_area(loop[0], loop[i - 1], loop[i]);
+    moment = moment + weight * ((loop[i - 1] - loop[0]) + (loop[i] - loop[0]));
     area += weight;
   }
   return loop[0] + (1 / (3 * area)) * moment;
 }
 
+/// Of a convex loop; needles that are collinear up to rounding have one, too.
 double area(std::span<const Vec3> loop) {
-  Vec3 sum;
-  for (std::size_t i = 2; i < loop.size(); ++i) sum = sum + cross(loop[i - 1] - loop[0], loop[i] - loop[0]);
-  return norm(sum) / 2;
+  double sum = 0;
+  for (std::size_t i = 2; i < loop.size(); ++i) sum += doubled_area(loop[0], loop[i - 1], loop[i]);
+  return sum / 2;
+}
+
+/// Of a needle, whose corners are collinear up to rounding, the rounded normal has no digit left.
+Vec3 unit_normal(const Plane& plane) {
+  const bool is_needle = plane.normal_error > 0x1p-40 * plane.normal_size;
+  const auto& [a, b, c] = plane.points;
+  return normalized(is_needle ? exact_cross(*a, *b, *c) : plane.normal);
 }
 
 Loop without_repetitions(const Loop& loop) {
@@ -62,6 +73,15 @@ Loop without_repetitions(const Loop& loop) {
 
 double length(const Vec3& a, const Vec3& b) {
   return norm(b - a);
+}
+
+bool is_needle(const Loop& facet) {
+  double longest = 0, reach = 0;
+  for (const Vec3& p : facet) {
+    longest = std::max(longest, length(facet[0], p));
+    reach = std::max({reach, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+  }
+  return area(facet) < kNeedle * reach * longest;
 }
 
 /// Cuts a convex loop along a line; side(p) is p's distance from it. Either part may come out empty. The points where
@@ -201,6 +221,12 @@ class SquareGrid {
 
   double extent(std::size_t axis) const { return extent_[axis]; }
 
+  /// Which of n parts along an axis a point lies in.
+  std::uint32_t part_of(const Vec3& p, std::size_t axis, std::uint32_t n) const {
+    const double share = (dot(axis_[axis], p - origin_) - lower_[axis]) / extent_[axis];
+    return static_cast<std::uint32_t>(std::clamp(std::floor(share * n), 0.0, n - 1.0));
+  }
+
   /// Cuts a convex loop by lines first + 1 … last − 1 of n across an axis; emit(k, part) gets what lies between k and k
   /// + 1.
   template <class Emit>
@@ -245,9 +271,13 @@ class Mesher {
     surface_ = surface;
     const Polygon& polygon = scene_.surfaces[surface].polygon;
     const Loop outer = without_repetitions(polygon.outer);
-    if (facets_.size() == 1 && facets_[0].size() == 3)
+    const auto needles = std::ranges::count_if(facets_, is_needle);
+    if (needles == std::ssize(facets_))
+      keep_whole(polygon);
+    else if (facets_.size() == 1 && facets_[0].size() == 3)
       cut_triangle(facets_[0]);
-    else if (polygon.holes.empty() && outer.size() == 4 && facets_.size() <= 2 && is_strictly_convex(outer))
+    else if (needles == 0 && polygon.holes.empty() && outer.size() == 4 && facets_.size() <= 2 &&
+             is_strictly_convex(outer))
       cut_quad({outer[0], outer[1], outer[2], outer[3]});
     else
       cut_polygon(polygon);
@@ -323,7 +353,7 @@ class Mesher {
     element.facet = largest->facet;
     element.sample =
         largest->loop_count > 0 ? centroid(mesh_.loop(*largest)) : centroid(facets_[largest->facet - first_facet_]);
-    element.normal = normalized(soup_.facets()[element.facet].plane.normal);
+    element.normal = unit_normal(soup_.facets()[element.facet].plane);
     mesh_.elements.push_back(element);
   }
 
@@ -341,6 +371,13 @@ class Mesher {
     Patch& patch = mesh_.patches.back();
     patch.element_count = static_cast<std::uint32_t>(mesh_.elements.size()) - patch.element_first;
     for (std::uint32_t e = 0; e < patch.element_count; ++e) patch.area += mesh_.elements[patch.element_first + e].area;
+  }
+
+  void keep_whole(const Polygon& polygon) {
+    check_size(static_cast<double>(facets_.size()), static_cast<double>(polygon.outer.size()));
+    begin_patch(true, [] {});
+    element_is_patch(polygon.outer);
+    end_patch();
   }
 
   void cut_quad(const std::array<Vec3, 4>& q) {
@@ -434,12 +471,19 @@ class Mesher {
     };
     const bool whole = m == 1 && n == 1;
     std::vector<Part> in_cells;
-    for (std::uint32_t f = 0; f < facets_.size(); ++f)
+    for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+      const auto add = [&](std::uint32_t i, std::uint32_t j, const Loop& part) {
+        in_cells.push_back({std::uint64_t{j} * m + i, f, part});
+      };
+      if (is_needle(facets_[f])) {
+        const Vec3 middle = centroid(facets_[f]);
+        add(grid.part_of(middle, 0, m), grid.part_of(middle, 1, n), facets_[f]);
+        continue;
+      }
       grid.cut(facets_[f], 0, 0, m, m, [&](std::uint32_t i, const Loop& strip) {
-        grid.cut(strip, 1, 0, n, n, [&](std::uint32_t j, const Loop& part) {
-          in_cells.push_back({std::uint64_t{j} * m + i, f, part});
-        });
+        grid.cut(strip, 1, 0, n, n, [&](std::uint32_t j, const Loop& part) { add(i, j, part); });
       });
+    }
     std::stable_sort(in_cells.begin(), in_cells.end(), [](const Part& a, const Part& b) { return a.cell < b.cell; });
     for (auto first = in_cells.begin(); first != in_cells.end();) {
       const auto last = std::find_if(first, in_cells.end(), [&](const Part& p) { return p.cell != first->cell; });
@@ -464,13 +508,14 @@ class Mesher {
                          std::uint32_t facet, const Loop& loop) {
     const std::uint32_t e = per_edge_;
     const auto i = static_cast<std::uint32_t>(cell % m), j = static_cast<std::uint32_t>(cell / m);
-    grid.cut(loop, 0, i * e, (i + 1) * e, m * e, [&](std::uint32_t, const Loop& strip) {
-      grid.cut(strip, 1, j * e, (j + 1) * e, n * e, [&](std::uint32_t, const Loop& part) {
-        const auto first = static_cast<std::uint32_t>(mesh_.pieces.size());
-        add_piece(facet, part);
-        add_element_with_outline(first, part);
-      });
-    });
+    const auto add = [&](std::uint32_t, const Loop& part) {
+      const auto first = static_cast<std::uint32_t>(mesh_.pieces.size());
+      add_piece(facet, part);
+      add_element_with_outline(first, part);
+    };
+    if (is_needle(facets_[facet - first_facet_])) return add(0, loop);
+    grid.cut(loop, 0, i * e, (i + 1) * e, m * e,
+             [&](std::uint32_t, const Loop& strip) { grid.cut(strip, 1, j * e, (j + 1) * e, n * e, add); });
   }
 
   const Scene& scene_;

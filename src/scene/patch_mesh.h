@@ -70,6 +70,7 @@ PolygonSoup make_soup(const Scene& scene);
 ///  - Other polygons (more corners, non-convex, with holes) are cut by a square grid along their longest edge. A patch
 ///  is
 ///    what a cell holds of the polygon, on one or more facets; each of its elements lies on one facet.
+///  - Facets narrower than 2^-40 of their coordinates, which rounded points cannot cut, stay whole.
 /// Points on an edge depend on its two ends and the number of parts only, bit for bit, whichever surface they belong
 /// to. patch_size ≥ 0 and finite, elements_per_edge ≥ 1, or std::invalid_argument; LimitError when the mesh would have
 /// more points than 32 bits count.

@@ -5,6 +5,7 @@
 #include "src/scene/mesh_file.h"
 #include "src/scene/placement.h"
 #include "src/scene/read_vs3.h"
+#include "src/scene/scene_extent.h"
 #include "src/scene/scene_file.h"
 
 namespace exitance {
@@ -27,9 +28,7 @@ Scene read_view3d(const std::filesystem::path& path, bool keep_faults) {
   return scene;
 }
 
-}  // namespace
-
-Scene read_scene(const std::filesystem::path& path, const ReadOptions& options) {
+Scene read_any(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string extension = lower_extension(path);
   const bool is_scene_file = extension == ".toml", is_view3d = extension == ".vs3";
   if (!is_scene_file && !is_view3d) return read_bare_mesh(path, options);
@@ -42,6 +41,14 @@ Scene read_scene(const std::filesystem::path& path, const ReadOptions& options) 
   }
   return is_view3d ? read_view3d(path, options.keep_faults)
                    : read_scene_file(path, options.emission, options.keep_faults);
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& path, const ReadOptions& options) {
+  Scene scene = read_any(path, options);
+  if (!options.keep_faults) refuse_bad_extents(scene, path);
+  return scene;
 }
 
 }  // namespace exitance

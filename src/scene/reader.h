@@ -13,7 +13,8 @@ struct ReadOptions {
   bool flip = false;                       ///< turn every face over; bare meshes only
   bool two_sided = false;                  ///< add every face again, turned over; bare meshes only (after flip)
   /// For checking: leave coordinates that are not finite, reflectances and emissions out of range and, in scene files,
-  /// polygons that cross themselves in the scene, for check_scene to list, where they would be refused.
+  /// polygons that cross themselves, and sizes that cannot be computed with in the scene, for check_scene to list,
+  /// where they would be refused.
   bool keep_faults = false;
 };
 
@@ -23,7 +24,8 @@ struct ReadOptions {
 /// cross themselves are mended and zero-area faces kept (see face_mending.h), materials that are missing are replaced
 /// by rho 0.5, E 0, each with a warning in the scene. Throws InputError for a missing or unreadable file, an unknown
 /// extension, a truncated mesh, malformed or non-finite numbers, a face with fewer than three vertices, a vertex number
-/// out of range, rho outside [0, 1), negative E.
+/// out of range, rho outside [0, 1), E negative, too small or too large, sizes that cannot be computed with
+/// (scene_extent.h), and a scene in which no surface has an area and is more than an obstruction.
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace exitance

@@ -10,6 +10,8 @@
 #include "geometry/contact.h"
 #include "geometry/spatial_index.h"
 #include "geometry/surface_pieces.h"
+#include "src/scene/material_check.h"
+#include "src/scene/scene_extent.h"
 
 namespace exitance {
 namespace {
@@ -23,16 +25,24 @@ struct KindText {
 };
 
 // In the order of FindingKind.
-constexpr std::array<KindText, 14> kTexts{{
+constexpr std::array<KindText, 16> kTexts{{
     {"non_finite", Severity::error, "", "faces with a coordinate that is not a finite number",
      "correct or remove them"},
+    {"bad_extent", Severity::error, "",
+     "faces too large or too small to compute with: coordinates may be 1e50 at most, the scene's largest must be 1e-50 "
+     "at "
+     "least, areas 1e-50 of its square",
+     "scale the scene, or remove them"},
     {"zero_area", Severity::note, "", "faces without area", "they make no patch and hide nothing; remove them"},
     {"self_intersecting", Severity::error, "", "faces whose boundary crosses or touches itself",
      "cut them into simple polygons"},
     {"non_planar", Severity::note, "m", "faces that are not planar; the worst deviates by",
      "they are used as the triangles of one diagonal cut; triangulate them to choose another"},
-    {"reflectance", Severity::error, "", "materials with a reflectance outside [0, 1) or an emission below 0",
+    {"reflectance", Severity::error, "",
+     "materials with a reflectance outside [0, 1), or an emission that is neither 0 nor from 1e-250 to 1e100",
      "correct them, or override the material in a scene file"},
+    {"no_patch", Severity::error, "",
+     "no face has an area and is more than an obstruction, so there is nothing to solve", "add one"},
     {"no_emitter", Severity::warning, "", "nothing emits, so everything stays dark",
      "give a material Ke (MTL) or E (scene file)"},
     {"duplicate_face", Severity::warning, "m^2", "faces that are there twice; their area is",
@@ -57,12 +67,6 @@ constexpr std::array<KindText, 14> kTexts{{
 
 // Rounding of coordinates moves a vertex of an exactly planar face by a few units in the last place.
 constexpr double kRounding = 8 * 2.220446049250313e-16;
-
-double largest_coordinate(const Polygon& polygon) {
-  double largest = 0;
-  for (const Vec3& p : polygon.outer) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
-  return largest;
-}
 
 // Largest distance of a vertex from the plane through the middle of the outer vertices.
 double deviation_from_plane(const Polygon& polygon) {
@@ -144,6 +148,7 @@ class SceneChecker {
 
   // Sorts out the faces that the geometry can work with.
   void check_faces() {
+    const double scene_extent = extent(scene_);
     for (std::uint32_t i = 0; i < scene_.surfaces.size(); ++i) {
       const Polygon& polygon = scene_.surfaces[i].polygon;
       const PolygonDefect defect = find_defect(polygon);
@@ -152,6 +157,11 @@ class SceneChecker {
       if (defect == PolygonDefect::zero_area || defect == PolygonDefect::too_few_vertices)
         add(FindingKind::zero_area, i);
       if (defect != PolygonDefect::none && defect != PolygonDefect::zero_area) continue;
+      if (!find_bad_extent(polygon, scene_extent).empty()) {
+        add(FindingKind::bad_extent, i);
+        continue;
+      }
+      any_patch_ = any_patch_ || (defect == PolygonDefect::none && !scene_.surfaces[i].obstruction_only);
       surface_of_.push_back(i);
       polygons_.push_back(polygon);
       if (defect == PolygonDefect::none) check_planarity(i);
@@ -161,7 +171,7 @@ class SceneChecker {
   void check_planarity(std::uint32_t i) {
     const Polygon& polygon = scene_.surfaces[i].polygon;
     const double deviation = deviation_from_plane(polygon);
-    if (deviation <= kRounding * largest_coordinate(polygon)) return;
+    if (!(deviation > kRounding * extent(polygon))) return;
     const auto found = findings_.find(FindingKind::non_planar);
     const double worst = std::max(deviation, found == findings_.end() ? 0 : found->second.amount);
     add(FindingKind::non_planar, i);
@@ -171,7 +181,7 @@ class SceneChecker {
   void check_materials() {
     const auto in_range = [](const Material& m) {
       return std::ranges::all_of(m.rho, [](double rho) { return rho >= 0 && rho < 1; }) &&
-             std::ranges::all_of(m.E, [](double E) { return E >= 0 && std::isfinite(E); });
+             std::ranges::all_of(m.E, is_emission);
     };
     for (std::uint32_t i = 0; i < scene_.materials.size(); ++i) {
       const Material& m = scene_.materials[i];
@@ -184,6 +194,7 @@ class SceneChecker {
       return !s.obstruction_only && std::ranges::any_of(scene_.materials[s.material].E, [](double E) { return E > 0; });
     });
     if (!emits_) finding(FindingKind::no_emitter).count = 1;
+    if (!any_patch_) finding(FindingKind::no_patch).count = 1;
   }
 
   void check_duplicates() {
@@ -278,7 +289,7 @@ class SceneChecker {
   }
 
   const Scene& scene_;
-  bool emits_ = false;
+  bool emits_ = false, any_patch_ = false;
   SceneReport report_;
   std::map<FindingKind, Finding> findings_;
   std::vector<Polygon> polygons_;          // those that geometry can work with

@@ -11,10 +11,12 @@ namespace exitance {
 
 enum class FindingKind {
   non_finite,         ///< a coordinate is NaN or infinite
+  bad_extent,         ///< a coordinate, the scene or an area too large or too small to compute with (scene_extent.h)
   zero_area,          ///< all vertices of a face on one line
   self_intersecting,  ///< the boundary of a face crosses or touches itself
   non_planar,   ///< a face bent by more than rounding of its coordinates explains; `amount` is the worst deviation [m]
-  reflectance,  ///< rho outside [0, 1), or E negative or not finite; counts materials
+  reflectance,  ///< rho outside [0, 1), or E negative, too small or too large; counts materials
+  no_patch,     ///< no face has an area and is more than an obstruction
   no_emitter,   ///< nothing emits
   duplicate_face,       ///< a face that is there already, facing the same way; `amount` is their area [m²]
   non_manifold_edge,    ///< an edge of one object used by more than two faces, or twice in the same direction

@@ -145,6 +145,10 @@ class SceneFile {
       table.fail(table.line_of("mesh"),
                  fmt::format("the mesh {} is missing; paths are relative to this file", file.string()));
     }
+    if (const std::string extension = lower_extension(file); extension == ".toml" || extension == ".vs3") {
+      table.fail(table.line_of("mesh"),
+                 fmt::format("{} is no mesh; an object takes .obj, .ply, .off or .stl", file.string()));
+    }
     Scene part = read_mesh(file, emission_, keep_faults_);
     part.objects = {{name.empty() ? part.name : name, file.string()}};
     for (Surface& surface : part.surfaces) surface.object = 0;
@@ -254,7 +258,7 @@ class SceneFile {
       const double s = *table.number("scale");
       scale = {s, s, s};
     }
-    if (scale.x * scale.y * scale.z == 0) table.fail(table.line_of("scale"), "\"scale\" must not be zero");
+    if (scale.x == 0 || scale.y == 0 || scale.z == 0) table.fail(table.line_of("scale"), "\"scale\" must not be zero");
     return scale;
   }
 

@@ -79,14 +79,111 @@ TEST_F(BadInputTest, Usage) {
   expect_of_scene(2, cube + " --method hierarchical", "gather,shoot");
   expect_of_scene(2, cube + " --visibility rays", "exact");
   expect_of_scene(2, cube + " --receivers volume", "points");
-  expect_of_scene(2, cube + " --patch-size -1", "patch size");
-  expect_of_scene(2, cube + " --patch-size nan", "patch size");
   expect_of_scene(2, cube + " --patch-size wide", "--patch-size");
   expect_of_scene(2, cube + " --elements 0", "elements");
   expect_of_scene(2, cube + " --tolerance 0", "tolerance");
   expect_of_scene(2, cube + " --threads 0", "--threads");
   expect_of_scene(2, cube + " --shots 5", "--method shoot");
   expect(2, "generate furnished-room --polygons 5 -o x.obj", "--polygons");
+  expect(2, "generate furnished-room --polygons 500 -o " + (scratch / "room.mtl").string(), "must end in .obj");
+}
+
+/// What is no number, not finite, or outside of an option's range is refused by every option that takes a number.
+TEST_F(BadInputTest, Numbers) {
+  const std::string solve = "solve " + data("furnace_cube.toml"),
+                    formfactor = "formfactor " + data("furnace_cube.toml"),
+                    check = "check " + data("furnace_cube.toml") + " --closure 5",
+                    cases = "cases " + write("cases.json", "{\"cases\":[]}"),
+                    generate = "generate furnished-room -o " + (scratch / "room.obj").string() + " --polygons 500";
+  struct Option {
+    std::string verb, name;
+    bool is_whole, may_be_zero;
+  };
+  const Option options[] = {{solve, "--form-factor-tolerance", false, false},
+                            {solve, "--patch-size", false, true},
+                            {solve, "--elements", true, false},
+                            {solve, "--tolerance", false, false},
+                            {solve + " --method shoot", "--shots", true, true},
+                            {solve, "--time-limit", false, false},
+                            {solve, "--memory-limit", false, false},
+                            {solve, "--threads", true, false},
+                            {solve, "--seed", true, true},
+                            {formfactor, "--tolerance", false, false},
+                            {formfactor, "--relative", false, true},
+                            {formfactor, "--patch-size", false, true},
+                            {formfactor, "--threads", true, false},
+                            {formfactor, "--memory-limit", false, false},
+                            {formfactor, "--save-every", false, true},
+                            {formfactor, "--seed", true, true},
+                            {check, "--seed", true, true},
+                            {check, "--threads", true, false},
+                            {"check " + data("furnace_cube.toml"), "--closure", true, false},
+                            {cases, "--tolerance", false, false},
+                            {cases, "--threads", true, false},
+                            {"generate furnished-room -o x.obj", "--polygons", true, false},
+                            {generate, "--seed", true, true}};
+  for (const Option& option : options) {
+    std::vector<std::string> wrong = {"nan", "-1"};
+    if (option.is_whole) wrong.push_back("1.5");
+    if (!option.may_be_zero) wrong.push_back("0");
+    for (const std::string& value : wrong)
+      expect(2, option.verb + " " + option.name + " " + value, option.name + ": must be a ");
+  }
+  for (const char* value : {"-nan", "inf", "-inf", "1e999", "1e-999", "\"\"", "1x"})
+    expect(2, solve + " --tolerance " + value, "--tolerance: must be a number above 0;");
+  for (const char* value : {"nan", "inf", "1e3", "+", "\"\"", "1x", "18446744073709551616"})
+    expect(2, solve + " --seed " + value, "--seed: must be a whole number from 0 to 2^64 - 1;");
+  expect(2, solve + " --threads 99999999999", "--threads: must be a whole number from 1 to 1024;");
+}
+
+/// What makes `solve` refuse, `check` tells, with the same exit code.
+TEST_F(BadInputTest, CheckRefusesWhatSolveRefuses) {
+  const auto box = [](const std::string& more, const std::string& E = "1") {
+    return "[[material]]\nname = \"m\"\nrho = 0.5\nE = " + E +
+           "\n[[object]]\nmaterial = \"m\"\nflip = true\nbox = {min = [0, 0, 0], max = [1, 1, 1]}\n" + more;
+  };
+  const std::tuple<std::string, std::string, std::string> scenes[] = {
+      {write("flat.toml", "[[object]]\npolygons = [[[0, 0, 0], [1, 1, 1], [3, 3, 3]]]\n"), "no surface has an area",
+       "no_patch"},
+      {write("obstructions.toml", box("obstruction_only = true\n")), "no surface has an area", "no_patch"},
+      {write("large.toml", box("scale = 1e200\n")), "large.toml:8: a coordinate is 1e+200", "bad_extent"},
+      {write("small.toml", box("scale = 1e-200\n")), "small.toml:8: no coordinate of the scene", "bad_extent"},
+      {write("overflow.toml", box("scale = 1e300\n")), "overflow.toml:8: a coordinate is 1e+300", "bad_extent"},
+      {write("speck.toml", box("[[object]]\npolygons = [[[0, 0, 0], [1e-30, 0, 0], [0, 1e-30, 0]]]\n")),
+       "speck.toml:10: its area of 5e-61", "bad_extent"},
+      {write("bright.toml", box("", "1e300")), "bright.toml:1: material 'm' has emission 1e+300", "reflectance"},
+      {write("dim.toml", box("", "1e-300")), "dim.toml:1: material 'm' has emission 1e-300", "reflectance"}};
+  for (const auto& [scene, says, kind] : scenes) {
+    for (const char* verb : {"solve ", "formfactor "}) {
+      const Outcome outcome = run(verb + scene);
+      EXPECT_EQ(outcome.code, 3) << verb << scene;
+      EXPECT_THAT(outcome.err, testing::HasSubstr(says)) << verb << scene;
+    }
+    const Outcome checked = run("check --json " + scene);
+    EXPECT_EQ(checked.code, 3) << scene;
+    EXPECT_THAT(checked.out, testing::HasSubstr("\"kind\": \"" + kind + "\"")) << scene;
+  }
+}
+
+/// A terminal obeys control characters.
+TEST_F(BadInputTest, BytesOfAFileAreNotEchoed) {
+  const std::string bytes = "\x1b]0;title\x07\xff";
+  for (const char* name : {"garbage.off", "garbage.vs3", "garbage.obj"}) {
+    const Outcome outcome = run("solve " + write(name, "v " + bytes + "\n"));
+    EXPECT_EQ(outcome.code, 3) << name;
+    EXPECT_TRUE(outcome.one_line_on_stderr()) << name;
+    EXPECT_EQ(outcome.err.find_first_of("\x1b\x07\xff"), std::string::npos) << name;
+  }
+  const Outcome named =
+      run("check " + write("named.obj", "o \x1b[2J\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n"));
+  EXPECT_EQ(named.out.find('\x1b'), std::string::npos);
+  EXPECT_THAT(named.out, testing::HasSubstr("\\x1b[2J"));
+}
+
+TEST_F(BadInputTest, AMeshMustBeAMesh) {
+  const std::string self = write("self.toml", "[[object]]\nmesh = \"self.toml\"\n");
+  expect_of_scene(3, self, "self.toml:2: ");
+  expect_of_scene(3, write("deep.toml", "a = " + std::string(100000, '[')), "deep.toml:1: ");
 }
 
 }  // namespace

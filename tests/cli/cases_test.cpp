@@ -213,7 +213,7 @@ TEST_F(Cases, EveryRuleIsNamedWhenBroken) {
   EXPECT_EQ(complaint(point_case(origin, up, "[]")), "source: must be an object");
   EXPECT_EQ(complaint(point_case(origin, up, R"({"polygon":[[0,0,1],[1,1,1],[1,0,1],[0,1,1]]})")),
             "source: its boundary crosses or touches itself, or a hole lies outside it");
-  EXPECT_EQ(complaint(point_case(origin, up, R"({"polygon":[[0,0,1],[1,1,1]]})")),
+  EXPECT_EQ(complaint(point_case(origin, up, with(kCeiling, R"("holes":[[[0,0,1],[1,1,1]]])"))),
             "source: a loop has fewer than three vertices");
   EXPECT_EQ(complaint(point_case(origin, up, kCeiling, "[{}]")),
             "occluders[0]: the key \"polygon\" or \"polyhedron\" is missing");
@@ -238,6 +238,98 @@ TEST_F(Cases, EveryRuleIsNamedWhenBroken) {
   EXPECT_EQ(complaint(R"({"kind":"dynamic","before":{"patches":[]},"after":{"patches":[)" +
                       with(kFloor, R"("E":1,"rho":0)") + "]}}"),
             "after.patches: must list the same patches as before.patches, in the same order");
+}
+
+/// DESIGN.md 7: of zero area, a source or an occluder counts for nothing and a receiver is an error, in every kind.
+TEST_F(Cases, WithoutArea) {
+  const double F = point_below_corner(1, 1, 1);
+  for (const char* nothing : {"[]", "[[0,0,0.5]]", "[[0,0,0.5],[1,1,0.5]]", "[[0,0,0.5],[1,1,0.5],[0.5,0.5,0.5]]",
+                              "[[0.1,0.3,0.7],[0.1,0.3,0.7],[0.1,0.3,0.7]]"}) {
+    const std::string polygon = R"({"polygon":)" + std::string(nothing) + "}";
+    const std::string occluders = "[" + polygon + R"(,{"polyhedron":[)" + nothing + R"(]},{"polyhedron":[]}])";
+    EXPECT_EQ(answer(point_case("[0,0,0]", "[0,0,1]", polygon))["F"], 0) << nothing;
+    EXPECT_NEAR(answer(point_case("[0,0,0]", "[0,0,1]", kCeiling, occluders))["F"].get<double>(), F, 1e-15) << nothing;
+    const auto pair = [&](const std::string& receiver, const std::string& source) {
+      return R"({"kind":"polygon_polygon","receiver":)" + receiver + R"(,"source":)" + source + R"(,"occluders":)" +
+             occluders + "}";
+    };
+    EXPECT_NEAR(answer(pair(kFloor, kCeiling))["F"].get<double>(), opposite_rectangles(1, 1, 1), 1e-12) << nothing;
+    EXPECT_EQ(answer(pair(kFloor, polygon))["F"], 0) << nothing;
+    EXPECT_EQ(complaint(pair(polygon, kFloor)), "receiver: it has no area") << nothing;
+    EXPECT_EQ(complaint(R"({"kind":"enclosure","patches":[)" + kFloor + "," + polygon + "]}"),
+              "patches[1]: it has no area")
+        << nothing;
+    EXPECT_EQ(complaint(R"({"kind":"radiosity","patches":[)" + with(polygon, R"("E":1,"rho":0)") + "]}"),
+              "patches[0]: it has no area")
+        << nothing;
+    const std::string absent = with(polygon, R"("absent":true,"E":1,"rho":0)");
+    const std::string change = R"({"kind":"dynamic","before":{"patches":[)" + absent + R"(]},"after":{"patches":[)" +
+                               with(polygon, R"("E":1,"rho":0)") + "]}}";
+    EXPECT_EQ(complaint(change), "after.patches[0]: it has no area") << nothing;
+  }
+}
+
+TEST_F(Cases, WhatIsAbsentNeedsNoMore) {
+  const std::string there = with(kFloor, R"("E":2,"rho":0.5)"), absent = R"({"absent":true})";
+  const auto question = [](const std::string& before, const std::string& after) {
+    return R"({"kind":"dynamic","before":{"patches":[)" + before + R"(]},"after":{"patches":[)" + after + "]}}";
+  };
+  EXPECT_EQ(answer(question(there, absent))["dB"], Json({-2}));
+  EXPECT_EQ(answer(question(absent, there))["dB"], Json({2}));
+  EXPECT_EQ(answer(question(absent, absent))["B_after"], Json({0}));
+  EXPECT_EQ(answer(R"({"kind":"enclosure","patches":[)" + absent + "]}")["A"], Json({0}));
+  const std::string bands = with(kFloor, R"("E":[2,3],"rho":0.5)");
+  EXPECT_EQ(answer(question(absent, bands))["dB"], Json({{2, 3}}));
+}
+
+/// Sizes at which products overflow or vanish: the right number, or an error; never null and never a wrong number.
+TEST_F(Cases, Sizes) {
+  const auto square = [](const std::string& s, const std::string& z, bool up) {
+    const std::string a = "[0,0," + z + "]", b = "[" + s + ",0," + z + "]", c = "[" + s + "," + s + "," + z + "]",
+                      d = "[0," + s + "," + z + "]";
+    return R"({"polygon":[)" + (up ? a + "," + b + "," + c + "," + d : d + "," + c + "," + b + "," + a) + "]}";
+  };
+  const auto pair = [](const std::string& receiver, const std::string& source) {
+    return R"({"kind":"polygon_polygon","receiver":)" + receiver + R"(,"source":)" + source + "}";
+  };
+  const auto enclosure = [](const std::string& a, const std::string& b) {
+    return R"({"kind":"enclosure","patches":[)" + a + "," + b + "]}";
+  };
+  const double F = opposite_rectangles(1, 1, 1);
+  for (const char* s : {"1e-320", "1e-200", "1e-20", "1e20", "1e160", "1e300"}) {
+    const Json a = answer(pair(square(s, "0", true), square(s, s, false)));
+    EXPECT_NEAR(a["F"].get<double>(), F, s == std::string("1e-320") ? 1e-4 : 1e-12) << s;  // 1e-320 has three digits
+    const Json e = answer(enclosure(square(s, "0", true), square(s, s, false)));
+    if (e["status"] == "ok") {
+      EXPECT_NEAR(e["F"][0][1].get<double>(), F, 1e-12) << s;
+      EXPECT_GT(e["A"][0].get<double>(), 0) << s;
+    } else {
+      EXPECT_NE(e["message"].get<std::string>().find("its area is out of the range of a double"), std::string::npos);
+    }
+  }
+  for (const char* far : {"1e30", "1e80", "1e100", "1e200", "1e300"}) {
+    const std::string near_one = square("1", "0", true), far_one = square(far, far, false);
+    EXPECT_EQ(complaint(pair(near_one, far_one)).substr(0, 28), "receiver: its area is nothin") << far;
+    EXPECT_EQ(complaint(pair(far_one, near_one)).substr(0, 28), "source: its area is nothing ") << far;
+    EXPECT_EQ(complaint(enclosure(near_one, far_one)).substr(0, 30), "patches[0]: its area is nothin") << far;
+  }
+  EXPECT_EQ(complaint(R"({"kind":"radiosity","patches":[)" + with(kFloor, R"("E":1e300,"rho":0.5)") + "]}"),
+            "patches[0].E: must be 0 or of a size from 1e-250 to 1e100, not 1e+300");
+}
+
+TEST_F(Cases, DeepNestingIsRefusedInOneLine) {
+  const auto nested = [](std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
+  for (const std::size_t depth : {100u, 1000u, 100000u}) {
+    const Outcome r = run("{\"cases\":[\n{\"id\":" + nested(depth) + "}]}");
+    EXPECT_EQ(r.code, 3);
+    EXPECT_EQ(r.out, "");
+    EXPECT_NE(r.err.find("cases.json:2: has lists and objects more than 100 deep"), std::string::npos) << r.err;
+    EXPECT_EQ(run(std::string(depth, '[')).code, 3);
+    EXPECT_EQ(run("{\"cases\":[],\"more\":" + nested(depth) + "}").code, 3);
+  }
+  EXPECT_EQ(answer(point_case("[0,0,0]", "[0,0,1]", kCeiling, "[]", nested(90)))["status"], "ok");
+  const std::string brackets_in_a_text = "\"" + std::string(1000, '[') + "\"";
+  EXPECT_EQ(answer(point_case("[0,0,0]", "[0,0,1]", kCeiling, "[]", brackets_in_a_text))["status"], "ok");
 }
 
 TEST_F(Cases, FilesThatCannotBeUsedAreRefusedInOneLine) {

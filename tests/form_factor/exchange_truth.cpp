@@ -275,7 +275,8 @@ Truth::Truth(std::span<const Vec3> receiver, std::span<const Vec3> source, std::
   for (const Face* f : {&r, &s}) {
     for (const Point& p : *f) size_ = std::max({size_, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
   }
-  const Real rounding = 1e-16L * size_;
+  // Faces of one side of a turned body leave its plane by some roundings of their coordinates.
+  const Real rounding = 1e-14L * size_;
   r = clip(r, source_plane_, rounding);
   s = clip(s, receiver_plane_, rounding);
   empty_ = r.empty() || s.empty();

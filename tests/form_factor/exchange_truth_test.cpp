@@ -165,10 +165,11 @@ TEST(ExchangeTruth, SinglePairs) {
     for (const KnownPair& pair : {p.pair, turned(p.pair)}) {
       const ExchangeTruth t = exchange_truth(pair.receiver, pair.source, pair.occluders);
       const double F = static_cast<double>(t.integral) / area_of(pair.receiver);
-      const PairFormFactor f = product_of(pair, 1e-12, p.name == "slit" ? 1e-6 : 0);
+      const bool slit = p.name == "slit";  // tiny: what counts is the relative error
+      const PairFormFactor f = slit ? product_of(pair, 1e-18, 1e-6) : product_of(pair, 1e-12);
       EXPECT_NEAR(f.F, F, 1e-9) << p.name;
       EXPECT_LE(std::fabs(f.F - F), f.F_error + static_cast<double>(t.error) + 1e-15 * F) << p.name;
-      if (p.name == "slit") {
+      if (slit) {
         EXPECT_NEAR(f.F / F, 1, 1e-6);
       }
     }
@@ -200,7 +201,7 @@ std::vector<Entry> truth_of(const std::string& name) {
     EXPECT_TRUE(row) << name << ": " << line;
     entries.push_back(e);
   }
-  EXPECT_GE(entries.size(), 70u) << name;
+  EXPECT_GE(entries.size(), 65u) << name;
   return entries;
 }
 
@@ -317,9 +318,7 @@ TEST_P(TruthOfScene, DISABLED_Write) {
   const std::string name = GetParam();
   const Meshed meshed(name);
   PairIntegrator integrator = meshed.integrator();
-  // As many of each class; the rooms full of bodies take seconds a pair.
-  const bool fast = name.starts_with("box");
-  std::array left{0, fast ? 40 : 15, fast ? 20 : 5, fast ? 140 : 50};
+  std::array left{0, 40, 20, 140};  // of each class
   std::set<std::pair<int, int>> asked;
   Random random(name);
   std::string text = head("F_ij of pairs of patches of the scene " + name + ", exchange_scenes.h.");

@@ -47,6 +47,22 @@ std::vector<Polygon> turned(std::vector<Polygon> faces) {
   return faces;
 }
 
+/// Closedness knows no tolerance: however thin, a box encloses something, and the two sides of a sheet nothing.
+TEST(SurfacePieces, ThinRoomsAndTheTwoSidesOfASheet) {
+  for (const double thickness : {1e-3, 1e-12, 1e-15}) {
+    for (const auto& faces : {box({0, 0, 0}, {3, 2, thickness}), turned(box({-1.5, -1, 0}, {1.5, 1, thickness}))}) {
+      EXPECT_NEAR(find_surface_pieces(faces).pieces[0].volume / (6 * thickness), 1, 0.5) << thickness;
+      std::vector<Polygon> in = faces;
+      std::ranges::transform(in, in.begin(), reversed);
+      EXPECT_NEAR(find_surface_pieces(in).pieces[0].volume / (6 * thickness), -1, 0.5) << thickness;
+    }
+  }
+  const std::vector<Polygon> one_side = turned({box({0, 0, 0}, {3, 2, 1})[1]});
+  const auto sheet = find_surface_pieces(one_side + std::vector<Polygon>{reversed(one_side[0])});
+  EXPECT_TRUE(sheet.pieces[0].closed);
+  EXPECT_EQ(sheet.pieces[0].volume, 0);
+}
+
 TEST(SurfacePieces, ARoomAndABoxInIt) {
   const auto found = find_surface_pieces(room({0, 0, 0}, {3, 3, 3}) + box({1, 1, 1}, {2, 2, 2}));
   ASSERT_EQ(found.pieces.size(), 2u);

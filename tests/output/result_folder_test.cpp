@@ -50,6 +50,28 @@ TEST(ResultFolder, LeavesNoFolderThatWasMadeForNothing) {
   EXPECT_EQ(scratch.files(), 0u);
 }
 
+TEST(ResultFolder, RemovesTheParentsThatItMadeAndNoFolderThatWasThere) {
+  const ScratchFolder scratch;
+  { const ResultFolder results(scratch / "new/and/deep"); }
+  EXPECT_EQ(scratch.files(), 0u);
+  std::filesystem::create_directory(scratch / "empty");
+  { const ResultFolder results(scratch / "empty"); }
+  EXPECT_TRUE(std::filesystem::is_directory(scratch / "empty"));
+}
+
+TEST(ResultFolder, PublishesNothingWhereOneFileCannotBeReplaced) {
+  const ScratchFolder scratch;
+  write(scratch / "a", "earlier");
+  std::filesystem::create_directory(scratch / "b");
+  {
+    const ResultFolder results(scratch / "");
+    for (const char* name : {"a", "b", "c"}) write(results.draft() / name, "later");
+    EXPECT_THROW(results.publish(), InputError);
+  }
+  EXPECT_EQ(contents(scratch / "a"), "earlier");
+  EXPECT_EQ(scratch.files(), 2u);
+}
+
 TEST(ResultFolder, RefusesAFileInItsPlace) {
   const ScratchFolder scratch;
   write(scratch / "a", "");

@@ -1,9 +1,13 @@
 #include "src/output/whole_file.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <stdexcept>
+#include <thread>
 
 #include "src/scene/input_error.h"
 #include "tests/output/scratch_folder.h"
@@ -60,6 +64,60 @@ TEST(WholeFile, AFolderInTheWayIsAnErrorAndLeavesNothingBehind) {
   std::filesystem::create_directories(folder / "a.txt" / "inside");
   EXPECT_THROW(write_whole_file(folder / "a.txt", kText), InputError);
   EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(WholeFile, FollowsLinks) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "below");
+  write_whole_file(folder / "there", [](std::ostream& out) { out << "old"; });
+  std::filesystem::create_symlink("there", folder / "link");
+  std::filesystem::create_symlink("link", folder / "link_to_link");
+  std::filesystem::create_symlink("../not_yet_there", folder / "below" / "dangling");
+  write_whole_file(folder / "link_to_link", kText);
+  write_whole_file(folder / "below" / "dangling", kText);
+  EXPECT_EQ(contents(folder / "there"), "new");
+  EXPECT_EQ(contents(folder / "not_yet_there"), "new");
+  for (const auto& link : {folder / "link", folder / "link_to_link", folder / "below" / "dangling"})
+    EXPECT_TRUE(std::filesystem::is_symlink(link)) << link;
+  EXPECT_EQ(folder.files(), 5u);
+}
+
+TEST(WholeFile, LinksInACircleAreRefused) {
+  const ScratchFolder folder;
+  std::filesystem::create_symlink("b", folder / "a");
+  std::filesystem::create_symlink("a", folder / "b");
+  EXPECT_THROW(write_whole_file(folder / "a", kText), InputError);
+  EXPECT_EQ(folder.files(), 2u);
+}
+
+TEST(WholeFile, AFifoIsWrittenToAndStays) {
+  const ScratchFolder folder;
+  ASSERT_EQ(mkfifo((folder / "fifo").c_str(), 0600), 0);
+  std::filesystem::create_symlink("fifo", folder / "link");
+  for (const char* name : {"fifo", "link"}) {
+    std::string read;
+    std::jthread reader([&] { read = contents(folder / "fifo"); });
+    write_whole_file(folder / name, kText);
+    reader.join();
+    EXPECT_EQ(read, "new") << name;
+    EXPECT_TRUE(std::filesystem::is_fifo(folder / "fifo"));
+  }
+  EXPECT_EQ(folder.files(), 2u);
+}
+
+TEST(WholeFile, AFullDeviceIsAnError) {
+  EXPECT_THROW(write_whole_file("/dev/full", kText), InputError);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+/// What an open file holds already, which /proc names by its number, stays.
+TEST(WholeFile, AnOpenFileIsAddedTo) {
+  const ScratchFolder folder;
+  const int file = open((folder / "a.txt").c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0600);
+  ASSERT_EQ(write(file, "first ", 6), 6);
+  write_whole_file("/proc/self/fd/" + std::to_string(file), kText);
+  close(file);
+  EXPECT_EQ(contents(folder / "a.txt"), "first new");
 }
 
 }  // namespace

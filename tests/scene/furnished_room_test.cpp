@@ -7,17 +7,13 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
 
 #include "src/scene/scene_check.h"
-#include "src/scene/write_obj.h"
 
 namespace exitance {
 namespace {
@@ -250,43 +246,6 @@ TEST(FurnishedRoomBits, RefusesSizesItCannotMake) {
 
 TEST_P(FurnishedRoom, IsClosedWithItsContacts) {
   EXPECT_TRUE(is_closed(make_furnished_room(GetParam(), 7)));
-}
-
-TEST(WriteObj, ReadsBackToTheSameBits) {
-  const Scene scene = make_furnished_room(500, 5);
-  const auto folder = std::filesystem::path(testing::TempDir()) / "exitance_write_obj";
-  std::filesystem::create_directories(folder);
-  write_obj(scene, folder / "room.obj");
-  std::ifstream file(folder / "room.obj");
-  std::vector<Vec3> vertices;
-  std::size_t face = 0;
-  std::string line, material;
-  while (std::getline(file, line)) {
-    std::istringstream words(line);
-    std::string word;
-    words >> word;
-    if (word == "v") {
-      std::string x, y, z;
-      words >> x >> y >> z;
-      vertices.push_back({std::stod(x), std::stod(y), std::stod(z)});
-    } else if (word == "usemtl") {
-      words >> material;
-    } else if (word == "f") {
-      ASSERT_LT(face, scene.surfaces.size());
-      const Surface& s = scene.surfaces[face++];
-      EXPECT_EQ(material, scene.materials[s.material].name);
-      std::size_t index, corner = 0;
-      while (words >> index) {
-        ASSERT_LT(corner, s.polygon.outer.size());
-        EXPECT_EQ(vertices.at(index - 1), s.polygon.outer[corner++]);
-      }
-      EXPECT_EQ(corner, s.polygon.outer.size());
-    }
-  }
-  EXPECT_EQ(face, scene.surfaces.size());
-  EXPECT_FALSE(std::filesystem::exists(folder / "room.obj.part"));
-  EXPECT_THROW(write_obj(scene, folder / "missing" / "room.obj"), std::runtime_error);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -359,6 +359,57 @@ TEST(PatchMesh, ObstructionsAndZeroAreaGiveNoPatch) {
   EXPECT_EQ(mesh.patches[1].surface, 3u);
 }
 
+/// Corners collinear up to rounding: doubles lose all of the product, which is exactly 1, in its digits.
+TEST(PatchMesh, NeedlesKeepTheirAreaAndStayWhole) {
+  const double a = 0x1p30;
+  const Vec3 tip{a, a - 1, 0}, middle{a - 1, a - 2, 0};
+  ASSERT_EQ(cross(middle, tip), Vec3{});
+  for (const bool up : {true, false})
+    for (const double size : {0.0, 1.0})
+      for (const std::uint32_t elements : {1u, 3u}) {
+        const Scene scene = scene_of({{{{0, 0, 0}, up ? middle : tip, up ? tip : middle}, {}}});
+        const PatchMesh mesh = make_patch_mesh(scene, make_soup(scene), {size, elements});
+        ASSERT_EQ(mesh.elements.size(), 1u);
+        EXPECT_EQ(mesh.patches.at(0).area, 0.5);
+        EXPECT_EQ(mesh.elements[0].area, 0.5);
+        EXPECT_EQ(mesh.elements[0].normal, (Vec3{0, 0, up ? 1.0 : -1.0}));
+        EXPECT_EQ(mesh.elements[0].sample.z, 0);
+        EXPECT_NEAR(mesh.elements[0].sample.x, 2 * a / 3, 1);
+        EXPECT_NEAR(mesh.elements[0].sample.y, 2 * a / 3, 1);
+      }
+}
+
+/// A square with further vertices on its edges, which rounding moves off them: needles beside the rest of it.
+TEST(PatchMesh, VerticesOnEdgesUpToRounding) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> share;
+  for (const double far : {0.0, 1e3, 1e6})
+    for (int trial = 0; trial < 20; ++trial) {
+      const Loop corner = turned({square(0, 0, 3, 3), {}}).outer;
+      Polygon polygon;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Vec3 from = corner[k] + Vec3{far, -far, far}, to = corner[(k + 1) % 4] + Vec3{far, -far, far};
+        polygon.outer.push_back(from);
+        polygon.outer.push_back(from + 0.5 * share(random) * (to - from));
+        polygon.outer.push_back(from + (0.5 + 0.5 * share(random)) * (to - from));
+      }
+      const Scene scene = scene_of({polygon});
+      const PolygonSoup soup = make_soup(scene);
+      for (const double size : {0.0, 1.0})
+        for (const std::uint32_t elements : {1u, 2u}) {
+          const PatchMesh mesh = make_patch_mesh(scene, soup, {size, elements});
+          double area = 0;
+          for (const Patch& patch : mesh.patches) area += patch.area;
+          EXPECT_NEAR(area, 9, 1e-14 * (1 + far));
+          for (const Element& e : mesh.elements) {
+            EXPECT_GT(e.area, 0);
+            EXPECT_NEAR(norm(e.normal), 1, 1e-15);
+            EXPECT_TRUE(is_finite(e.sample));
+          }
+        }
+    }
+}
+
 TEST(PatchMesh, KeepsItsAccuracyFarAwayAndInAnyUnit) {
   for (const double scale : {1e-12, 1e-3, 1e12})
     for (Polygon polygon : {turned(kRing), turned({square(0, 0, 3, 2), {}}), kBent}) {

@@ -165,12 +165,16 @@ TEST_F(SceneFileTest, MistakesNameTheirLine) {
   EXPECT_THAT(error_of("[[object]]\nbox = {min = [0,0,nan], max = [1,1,1]}\n"), HasSubstr("not a finite number"));
   EXPECT_THAT(error_of("[[object]]\nname = \"nothing\"\n"), HasSubstr("exactly one of"));
   EXPECT_THAT(error_of("[[object]]\nmesh = \"none.obj\"\n"), AllOf(HasSubstr("scene.toml:5: "), HasSubstr("missing")));
+  EXPECT_THAT(error_of("[[object]]\nmesh = \"scene.toml\"\n"),
+              AllOf(HasSubstr("scene.toml:5: "), HasSubstr("no mesh")));
   EXPECT_THAT(error_of("[[object]]\npolygons = [\n[[0,0,0],[1,0,0]]]\n"), HasSubstr("scene.toml:6: "));
   EXPECT_THAT(error_of("[[object]]\npolygons = [\n[[0,0,0],[2,0,0],[0,1,0],[2,1,0]]]\n"),
               AllOf(HasSubstr("scene.toml:6: "), HasSubstr("crosses")));
   EXPECT_THAT(error_of("[[object]]\nbox = {min = [0,0,0], max = [1,1,1]}\nmaterial = \"blue\"\n"),
               AllOf(HasSubstr("scene.toml:6: "), HasSubstr("'blue'")));
   EXPECT_THAT(error_of("[[object]]\nbox = {min = [0,0,0], max = [1,1,1]}\nscale = 0\n"), HasSubstr("scene.toml:6: "));
+  EXPECT_THAT(error_of("[[object]]\nbox = {min = [0,0,0], max = [1,1,1]}\nscale = 1e-200\n"),
+              AllOf(HasSubstr("scene.toml:5: "), HasSubstr("scale it up")));
   EXPECT_THAT(error_of("[[material]]\nname = \"hot\"\nrho = 1.0\n[[object]]\nbox = {min = [0,0,0], max = [1,1,1]}\n"
                        "material = \"hot\"\n"),
               AllOf(HasSubstr("scene.toml:4: "), HasSubstr("reflectance 1")));

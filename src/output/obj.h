@@ -11,7 +11,7 @@ namespace exitance {
 /// exitance E (to be read as exitance, not as radiance). Numbers are the shortest decimals that read back to the same
 /// doubles. A polygon with holes, which OBJ does not know, is written as its facets; that a surface is there for
 /// obstruction only is lost. One band is written as grey; std::invalid_argument for other numbers of bands than 1
-/// and 3. Both files are written beside and renamed; InputError when that fails.
+/// and 3, and for a path that does not end in .obj. Either both files are written or none; InputError when that fails.
 void write_obj(const Scene& scene, const std::filesystem::path& path);
 
 }  // namespace exitance

@@ -1,8 +1,7 @@
-#include "src/scene/write_obj.h"
+#include "src/output/obj.h"
 
 #include <array>
 #include <charconv>
-#include <fstream>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -11,7 +10,8 @@
 #include <vector>
 
 #include "geometry/facets.h"
-#include "src/scene/input_error.h"
+#include "src/output/whole_file.h"
+#include "src/scene/mesh_file.h"
 
 namespace exitance {
 namespace {
@@ -27,21 +27,6 @@ std::string one_word(std::string name) {
   for (char& c : name)
     if (c == ' ' || c == '\t') c = '_';
   return name;
-}
-
-void write_whole(const std::filesystem::path& path, const std::string& text) {
-  std::filesystem::path beside = path;
-  beside += ".part";
-  std::ofstream out(beside, std::ios::binary);
-  out << text;
-  out.close();
-  std::error_code failure;
-  if (out) std::filesystem::rename(beside, path, failure);
-  if (!out || failure) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw InputError(path.string(), 0, "cannot be written; is the folder there, writable and not full?");
-  }
 }
 
 std::string materials_text(const Scene& scene) {
@@ -94,10 +79,15 @@ std::string geometry_text(const Scene& scene, const std::string& material_file) 
 void write_obj(const Scene& scene, const std::filesystem::path& path) {
   if (scene.bands != 1 && scene.bands != 3)
     throw std::invalid_argument("OBJ materials have one or three bands, not " + std::to_string(scene.bands));
+  if (lower_extension(path) != ".obj")
+    throw std::invalid_argument(path.string() + ": the file's name must end in .obj");
   std::filesystem::path materials = path;
   materials.replace_extension(".mtl");
-  write_whole(materials, materials_text(scene));
-  write_whole(path, geometry_text(scene, materials.filename().string()));
+  // The second file is published while the first stands ready, so that none comes without the other.
+  write_whole_file(path, [&](std::ostream& geometry) {
+    geometry << geometry_text(scene, materials.filename().string());
+    write_whole_file(materials, [&](std::ostream& out) { out << materials_text(scene); });
+  });
 }
 
 }  // namespace exitance

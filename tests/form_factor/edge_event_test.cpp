@@ -1,0 +1,109 @@
+#include "src/form_factor/edge_event.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "src/form_factor/crossing_pole.h"
+#include "tests/geometry/placement.h"
+
+namespace exitance {
+namespace {
+
+SeenEdge edge(std::uint64_t id, const Vec3& a, const Vec3& b) {
+  return {id, a, b, normalized(a), normalized(b)};
+}
+
+/// A rotation without zeros.
+Vec3 turned(const Vec3& p) {
+  const double s = 1.0 / 7;
+  return Vec3{0.1, 0.2, 0.3} + p.x * Vec3{2 * s, 3 * s, 6 * s} + p.y * Vec3{-6 * s, -2 * s, 3 * s} +
+         p.z * Vec3{3 * s, -6 * s, 2 * s};
+}
+
+/// Three edges above the unit square at z = 0, each met by the line of sight from `x` along `d`.
+std::array<SeenEdge, 3> edges_met(Random& random, const Vec3& x, const Vec3& d) {
+  std::array<SeenEdge, 3> edges;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 on = x + (0.5 + 0.4 * static_cast<double>(k)) * d,
+               along{random.real(-1, 1), random.real(-1, 1), random.real(-0.3, 0.3)};
+    edges[k] = edge(k + 2, on - along, on + 0.7 * along);
+  }
+  return edges;
+}
+
+TEST(EdgeEvent, HoldsWhereOneLineOfSightMeetsAllThree) {
+  Random random("edge event");
+  for (int k = 0; k < 50; ++k) {
+    const Vec3 x{random.real(0, 1), random.real(0, 1), 0}, d{random.real(-1, 1), random.real(-1, 1), 1};
+    const EdgeEvent event(edges_met(random, x, d));
+    const double slope = std::fabs(event.at(x + Vec3{0.5, 0, 0})) + std::fabs(event.at(x + Vec3{0, 0.5, 0}));
+    EXPECT_LE(std::fabs(event.at(x)), 1e-13 * (1 + slope)) << k;
+    EXPECT_FALSE(event.plane());
+  }
+}
+
+TEST(EdgeEvent, IsStraightWhereTwoEdgesShareAVertex) {
+  const Vec3 v{0.25, 0.5, 1};
+  const EdgeEvent event(
+      std::array{edge(2, v, {1, 1, 1.5}), edge(3, {0, 2, 1}, v), edge(4, {-1, 0.25, 0.5}, {2, 0.5, 0.5})});
+  ASSERT_TRUE(event.plane());
+  EXPECT_EQ(event.plane()->at(v), 0);
+  EXPECT_EQ(event.plane()->at({-1, 0.25, 0.5}), 0);
+  EXPECT_EQ(event.plane()->at({2, 0.5, 0.5}), 0);
+}
+
+/// A cell is cut in pieces that fill it, each on one side of the event, and so are the pieces along another event.
+TEST(EdgeEvent, PiecesOfACellLieOnOneSide) {
+  Random random("pieces");
+  int cuts = 0, bent = 0;
+  for (int k = 0; k < 200; ++k) {
+    const bool turn = k % 2 == 1;
+    const Vec3 x{random.real(0.2, 0.8), random.real(0.2, 0.8), 0};
+    auto edges = edges_met(random, x, {random.real(-1, 1), random.real(-1, 1), 1});
+    const auto place = [&](const Vec3& p) { return turn ? turned(p) : p; };
+    for (SeenEdge& e : edges) e = edge(e.id, place(e.a), place(e.b));
+    const EdgeEvent event(edges);
+    AreaCell cell{{place({0, 0, 0}), place({1, 0, 0}), place({1, 1, 0}), place({0, 1, 0})}, k % 3 == 0 ? 3 : 4};
+    const std::vector<AreaCell> parts = cut(cell, event);
+    if (parts.empty()) continue;
+    ++cuts;
+    double area = 0;
+    for (const AreaCell& part : parts) {
+      std::vector<WeightedPoint> points;
+      gauss_points(part, 12, points);
+      double side = 0;
+      for (const WeightedPoint& p : points) {
+        area += p.weight;
+        const double value = event.at(p.point);
+        EXPECT_GE(value * side, 0) << k;
+        side = value;
+      }
+      bent += !part.is_straight();
+      const auto [one, other] = bisect(part);
+      EXPECT_NEAR(one.area() + other.area(), part.area(), 1e-4 * cell.area()) << k;
+    }
+    EXPECT_NEAR(area, cell.area(), 1e-10) << k;
+  }
+  EXPECT_GE(cuts, 100);
+  EXPECT_GE(bent, cuts);
+}
+
+TEST(CrossingPole, GrowsTowardsParallelEdgesAndIsNoneInOnePlane) {
+  const AreaCell cell{{Vec3{0, 0, 0}, Vec3{0.1, 0, 0}, Vec3{0.1, 0.1, 0}, Vec3{0, 0.1, 0}}, 4};
+  // Seen from y = (0.01 + turn) / 0.2, e is parallel to the plane through g.
+  const auto error = [&](double turn) {
+    const SeenEdge g = edge(3, {-1, 0.05 + turn, 0.4}, {1, 0.05 - turn, 0.6});
+    SeenEdge e = edge(2, {-1, 0.05, 1}, {1, 0.05, 1});
+    e.to = g.to;
+    return pole_error(std::array{e, g}, cell, 5).error;
+  };
+  EXPECT_EQ(error(0), 0);
+  EXPECT_GT(error(0.2), 0);
+  EXPECT_GT(error(0.02), 100 * error(0.2));
+}
+
+}  // namespace
+}  // namespace exitance
