@@ -35,8 +35,7 @@ std::vector<VisualEvent> shadow_boundaries(const PolygonSoup& soup, const Source
     shaft.reset({cell.facet, cell.loop}, {emitter, {}});
     if (!shaft.face_each_other()) continue;
     if (shaft.find_occluders(between) == Shaft::Overlap::blocking) continue;
-    bool complete = false;
-    const std::vector<VisualEvent> events = visual_events(soup, cell, {emitter, {}}, between, complete);
+    const std::vector<VisualEvent> events = visual_events(soup, cell, {emitter, {}}, between);
     all.insert(all.end(), events.begin(), events.end());
   }
   return all;
