@@ -10,8 +10,10 @@ namespace exitance {
 enum ExitCode : int { done = 0, check_failed = 1, usage = 2, bad_input = 3, limit_reached = 4 };
 
 void add_check(CLI::App& app);
+void add_diff(CLI::App& app);
 void add_formfactor(CLI::App& app);
 void add_generate(CLI::App& app);
+void add_reference(CLI::App& app);
 void add_solve(CLI::App& app);
 
 }  // namespace exitance

@@ -43,6 +43,7 @@ std::vector<PairRows> finished_rows(const Checkpoint& checkpoint) {
 
 PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Checkpoint* checkpoint) {
   const auto n = static_cast<std::uint32_t>(scene.size());
+  const std::uint32_t rows_asked = std::min(n, options.rows.value_or(n));
   PairRun run;
   if (checkpoint != nullptr) run.rows = finished_rows(*checkpoint);
   std::vector<bool> is_finished(n);
@@ -53,7 +54,7 @@ PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Che
   run.finished = run.resumed;
   std::vector<std::uint32_t> left;
   double pairs_left = 0, pairs_done = 0;
-  for (std::uint32_t row = 0; row < n; ++row) {
+  for (std::uint32_t row = 0; row < rows_asked; ++row) {
     if (is_finished[row]) continue;
     left.push_back(row);
     pairs_left += n - row;

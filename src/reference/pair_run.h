@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "src/form_factor/pair_rows.h"
@@ -16,13 +17,14 @@ struct PairRun {
   PairStatistics statistics;   ///< of the rows that were computed now
   std::uint32_t finished = 0;  ///< rows
   std::uint32_t resumed = 0;   ///< of them, those that the checkpoint held
-  bool complete = false;       ///< whether all rows are finished; if not, `stop` ended the run
+  bool complete = false;       ///< whether all rows asked for are finished; if not, `stop` ended the run
 };
 
 struct PairRunOptions {
   PairOptions pairs = {};
-  double block_seconds = 2;  ///< about how much work is put into a block
-  Progress progress = {};    ///< by pairs, of those that were left to do
+  std::optional<std::uint32_t> rows = {};  ///< only the first so many; all unless given
+  double block_seconds = 2;                ///< about how much work is put into a block
+  Progress progress = {};                  ///< by pairs, of those that were left to do
   /// Asked after each block, from the thread that called: true ends the run. May be empty.
   std::function<bool()> stop = {};
 };
