@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 /// Points that each integral of so many pairs may take, so that the whole of it ends within a minute.
 std::uint64_t points_per_integral(std::uint64_t pairs) {
-  return std::clamp<std::uint64_t>(20'000'000 / std::max<std::uint64_t>(1, pairs), 2'000, 200'000);
+  return std::clamp<std::uint64_t>(5'000'000 / std::max<std::uint64_t>(1, pairs), 2'000, 200'000);
 }
 
 void answer_point_polygon(const nlohmann::json& question, double tolerance, Json& result) {
