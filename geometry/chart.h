@@ -67,9 +67,10 @@ class Chart {
   template <class F>
   void until_overlap(const ChartBox& box, std::size_t i, std::size_t n, const F& f) const {
     const double a0 = box.x0, a1 = box.x1, b0 = box.y0, b1 = box.y1;
-    for (std::size_t first = 0; first < n; first += kLanes) {
-      const std::size_t last = std::min(n, first + kLanes);
-      std::uint8_t meets[kLanes] = {};
+    constexpr std::size_t kStep = 8;
+    for (std::size_t first = 0; first < n; first += kStep) {
+      const std::size_t last = std::min(n, first + kStep);
+      std::uint8_t meets[kStep] = {};
       for (std::size_t j = first; j < last; ++j) {
         meets[j - first] = (x0_[j] <= a1) & (a0 <= x1_[j]) & (y0_[j] <= b1) & (b0 <= y1_[j]);
       }

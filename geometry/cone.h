@@ -146,6 +146,7 @@ template <class Real>
 struct Cone {
   Corners<Real> corners;
   std::vector<ConeSide<Real>> sides;
+  int turn = 1;  ///< sign of det(from, to, v) of a side's corners, as seen from x, for v inside of it
 };
 
 /// Unit roundoff of the number type: 2^-53 for double.
@@ -213,14 +214,17 @@ Real drop_of(const Drop* drop, const Vec3& v) {
 }
 
 /// Sets the cone of a polygon of input points, or of what these stand for, a side from each corner to the next; it runs
-/// so that sign · det(c − x, d − x, v − x) is positive inside.
+/// so that sign · det(c − x, d − x, v − x) is positive inside. Of several loops `next` tells which corner is next to
+/// each.
 ///
 /// In double precision corners that drop are left where they are, and what they drop is taken as their error. The sides
 /// then err by |(w + δ) × (w' + δ') − w × w'| ≤ |δ||w'| + |δ'||w| + |δ||δ'|.
 template <class Real>
-void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop, int sign,
-              const Drop* drop = nullptr) {
+void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop, int sign, const Drop* drop = nullptr,
+              std::span<const std::uint32_t> next = {}) {
   const std::size_t n = loop.size();
+  const auto next_to = [&](std::size_t k) { return !next.empty() ? next[k] : k + 1 < n ? k + 1 : 0; };
+  cone.turn = sign;
   Corners<Real>& corners = cone.corners;
   corners.resize(n);
   cone.sides.resize(n);
@@ -229,7 +233,7 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
   for (std::size_t first = 0; first < n; first += kLanes) {
     const std::size_t used = std::min(kLanes, n - first);
     for (std::size_t k = 0; k < used; ++k) {
-      const Vec3 &p = *loop[first + k], &q = *loop[first + k + 1 < n ? first + k + 1 : 0];
+      const Vec3 &p = *loop[first + k], &q = *loop[next_to(first + k)];
       from_x[k] = Real(p.x) - Real(x.x);
       from_y[k] = Real(p.y) - Real(x.y);
       from_z[k] = Real(p.z) - Real(x.z);
@@ -247,7 +251,7 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
         auto& to = drop->frame.axis == 0 ? to_x : drop->frame.axis == 1 ? to_y : to_z;
         auto& e = drop->frame.axis == 0 ? e_x : drop->frame.axis == 1 ? e_y : e_z;
         const Real at_from = drop_of<Real>(drop, *loop[first + k]),
-                   at_to = drop_of<Real>(drop, *loop[first + k + 1 < n ? first + k + 1 : 0]);
+                   at_to = drop_of<Real>(drop, *loop[next_to(first + k)]);
         from[k] -= at_from;
         to[k] -= at_to;
         e[k] -= at_to - at_from;
@@ -297,7 +301,7 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
       side.error = error[k];
       side.sweep = sweep[k];
       side.from = static_cast<std::uint32_t>(first + k);
-      side.to = static_cast<std::uint32_t>(first + k + 1 < n ? first + k + 1 : 0);
+      side.to = static_cast<std::uint32_t>(next_to(first + k));
       side.exact = {ViewPlane::Kind::edge, sign, loop[side.from], loop[side.to], nullptr, drop != nullptr};
       side.stretch = {};
       side.across = 0xffffffffu;
@@ -327,6 +331,28 @@ Signed<Real> refined_value_at(const ConeSide<Real>& side, const ViewPoint& corne
   // A value that underflows still has its sign.
   if (v.sign != 0 && v.value == 0) return {v.sign * std::numeric_limits<Real>::min(), Real(1), v.sign};
   return {Real(v.value), Real(v.error), v.sign};
+}
+
+/// Whether a corner is an end of the edge that the side is through.
+template <class Real>
+bool is_end_of(const ViewPoint& corner, const ConeSide<Real>& side) {
+  return side.exact.kind == ViewPlane::Kind::edge && corner.kind == ViewPoint::Kind::vertex &&
+         side.exact.dropped == corner.dropped && (*side.exact.c == *corner.a || *side.exact.d == *corner.a);
+}
+
+/// The side's functional at one corner, its sign exact.
+template <class Real>
+Signed<Real> value_at(const ConeSide<Real>& side, const Corners<Real>& corners, std::size_t k, const ViewFrame& frame,
+                      StageCounts& counts) {
+  const Real value = dot(side.m, corners.w(k)),
+             error = side.error * corners.length(k) + (side.length + side.error) * corners.error(k);
+  if (value > error || value < -error) {
+    ++counts.filter;
+    return {value, error, value > 0 ? 1 : -1};
+  }
+  if (is_end_of(corners.exact(k), side)) return {};
+  // In double precision a crossing is refined where that matters.
+  return refined_value_at(side, corners.exact(k), frame, counts, std::is_same_v<Real, double> ? 0.5 : 0x1p-50);
 }
 
 /// Values of a side's functional at the corners of a cone, with bounds of their errors and exact signs.
@@ -394,12 +420,8 @@ class Row {
                      Block& row, const ViewFrame& frame, StageCounts& counts) {
     for_each_byte(unsure, [&](std::size_t k) {
       const ViewPoint& corner = corners.exact(b * kLanes + k);
-      const bool own_vertex = side.exact.kind == ViewPlane::Kind::edge && corner.kind == ViewPoint::Kind::vertex &&
-                              side.exact.dropped == corner.dropped &&
-                              (*side.exact.c == *corner.a || *side.exact.d == *corner.a);
-      // In double precision a crossing is refined where that matters.
       constexpr double accuracy = std::is_same_v<Real, double> ? 0.5 : 0x1p-50;
-      const auto s = own_vertex ? Signed<Real>{} : refined_value_at(side, corner, frame, counts, accuracy);
+      const auto s = is_end_of(corner, side) ? Signed<Real>{} : refined_value_at(side, corner, frame, counts, accuracy);
       row.value[k] = s.value;
       row.error[k] = s.error;
       set_sign_byte(row.signs, k, s.sign);

@@ -1,6 +1,6 @@
 #pragma once
-// Eight numbers computed with side by side, by the vector extension of GCC and Clang: every operation is the scalar
-// one, rounded the same way, so that no result depends on the machine's vector width.
+// Four numbers computed with side by side, by the vector extension of GCC and Clang: every operation is the scalar one,
+// rounded the same way, so that no result depends on the machine's vector width. Most polygons have no more corners.
 
 #include <bit>
 #include <cstddef>
@@ -10,34 +10,30 @@
 
 namespace exitance {
 
-inline constexpr std::size_t kLanes = 8;
+inline constexpr std::size_t kLanes = 4;
 
 using Doubles = double __attribute__((vector_size(kLanes * sizeof(double))));
-using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 
-[[gnu::always_inline]] inline Doubles load(const double* eight) {
+[[gnu::always_inline]] inline Doubles load(const double* four) {
   Doubles v;
-  std::memcpy(&v, eight, sizeof v);
+  std::memcpy(&v, four, sizeof v);
   return v;
 }
-[[gnu::always_inline]] inline void store(const Doubles& v, double* eight) {
-  std::memcpy(eight, &v, sizeof v);
+[[gnu::always_inline]] inline void store(const Doubles& v, double* four) {
+  std::memcpy(four, &v, sizeof v);
 }
 
 [[gnu::always_inline]] inline Doubles square_root(const Doubles& v) {
-  using Half = std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, kLanes / 2>>;
-  alignas(64) double eight[kLanes];
-  store(v, eight);
-  for (std::size_t k = 0; k < kLanes; k += Half::size()) {
-    const Half part(eight + k, std::experimental::element_aligned);
-    sqrt(part).copy_to(eight + k, std::experimental::element_aligned);
-  }
-  return load(eight);
+  using Four = std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, kLanes>>;
+  alignas(64) double four[kLanes];
+  store(v, four);
+  sqrt(Four(four, std::experimental::element_aligned)).copy_to(four, std::experimental::element_aligned);
+  return load(four);
 }
 
-/// Eight signs, or a choice among eight: one byte each, the first in the lowest; −1 is 0xff.
-using SignBytes = std::uint64_t;
-inline constexpr SignBytes kOnes = 0x0101010101010101u;
+/// Four signs, or a choice among four: one byte each, the first in the lowest; −1 is 0xff.
+using SignBytes = std::uint32_t;
+inline constexpr SignBytes kOnes = 0x01010101u;
 
 inline SignBytes zero_bytes(SignBytes s) {
   return ~s & kOnes;

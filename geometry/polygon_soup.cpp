@@ -121,7 +121,18 @@ void PolygonSoup::add_facets(std::span<const Polygon> polygons) {
     }
     first_facet_.push_back(static_cast<std::uint32_t>(facets_.size()));
   }
-  for (Facet& f : facets_) f.plane = plane_of(vertices_, corners(f));
+  for (Facet& f : facets_) {
+    f.plane = plane_of(vertices_, corners(f));
+    FirstCorners& first = first_corners_.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Corner& c = corners(f)[k < f.count ? k : 0];
+      first.x[k] = c.at.x;
+      first.y[k] = c.at.y;
+      first.z[k] = c.at.z;
+      first.vertex[k] = c.vertex;
+    }
+    first.all = f.count <= 4;
+  }
 }
 
 void PolygonSoup::find_neighbours() {
@@ -269,6 +280,7 @@ void PolygonSoup::prefetch(std::span<const std::uint32_t> items) const {
     if (item >= facets_.size()) continue;
     const Facet& f = facets_[item];
     fetch(&corners_[f.first], f.count * sizeof(Corner));
+    fetch(&first_corners_[item], sizeof(FirstCorners));
   }
 }
 

@@ -2,6 +2,7 @@
 // The polygons of a scene, cut into facets, with what does not depend on the point of view: merged vertices, planes,
 // neighbours, shells, coplanar contacts and a spatial index. Immutable, so any number of threads may look at it.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -55,6 +56,13 @@ struct Corner {
       kNone;  ///< the one facet across the edge from this corner to the next; kNone: none, or several
 };
 
+/// Corners of a facet side by side: its first four, or those of a triangle and once more the first.
+struct alignas(32) FirstCorners {
+  std::array<double, 4> x, y, z;
+  std::array<std::uint32_t, 4> vertex;
+  bool all = false;  ///< there are no others
+};
+
 /// An edge of a shell: from – to runs counter-clockwise around facet `left`, clockwise around `right`.
 struct ShellEdge {
   std::uint32_t from, to, left, right;
@@ -81,6 +89,7 @@ class PolygonSoup {
   std::span<const Vec3> vertices() const { return vertices_; }
   std::span<const Facet> facets() const { return facets_; }
   std::span<const Corner> corners(const Facet& f) const { return {corners_.data() + f.first, f.count}; }
+  const FirstCorners& first_corners(std::uint32_t facet) const { return first_corners_[facet]; }
 
   std::size_t polygon_count() const { return roles_.size(); }
   Role role(std::uint32_t polygon) const { return roles_[polygon]; }
@@ -130,6 +139,7 @@ class PolygonSoup {
   std::vector<Vec3> vertices_;
   std::vector<Facet> facets_;
   std::vector<Corner> corners_;
+  std::vector<FirstCorners> first_corners_;  // by facet
   std::vector<Shell> shells_;
   std::vector<Role> roles_;
   std::vector<bool> closed_;  // by polygon: part of a closed surface; known only where patches lie against each other

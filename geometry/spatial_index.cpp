@@ -4,8 +4,6 @@
 #include <bit>
 #include <cstring>
 
-#include "geometry/lanes.h"
-
 namespace exitance {
 namespace {
 
@@ -131,8 +129,8 @@ std::int32_t SpatialIndex::build(std::span<std::uint32_t> items, std::span<const
     const Box box = k < parts ? box_of(part[k], boxes) : Box{};
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
-      node.lower[a][k] = k < parts ? rounded_down(scaled(box.lower[axis], axis)) : kEmptyPlace;
-      node.upper[a][k] = k < parts ? rounded_up(scaled(box.upper[axis], axis)) : -kEmptyPlace;
+      node.bounds[0][a][k] = k < parts ? rounded_down(scaled(box.lower[axis], axis)) : kEmptyPlace;
+      node.bounds[1][a][k] = k < parts ? rounded_up(scaled(box.upper[axis], axis)) : -kEmptyPlace;
     }
     node.child[k] = child;
   }
@@ -141,6 +139,7 @@ std::int32_t SpatialIndex::build(std::span<std::uint32_t> items, std::span<const
 
 void SpatialIndex::find(std::span<const HalfSpace> region, const Box& box, std::vector<std::uint32_t>& found) const {
   if (nodes_.empty()) return;
+  using Floats = float __attribute__((vector_size(kWidth * sizeof(float))));
   using Ints = std::int32_t __attribute__((vector_size(kWidth * sizeof(std::int32_t))));
   const auto floats = [](const std::array<float, kWidth>& eight) {
     Floats v;
@@ -152,6 +151,7 @@ void SpatialIndex::find(std::span<const HalfSpace> region, const Box& box, std::
   // larger than |offset| and |n · centre|.
   struct Limit {
     float x, y, z, offset;
+    std::array<std::size_t, 3> far;  // of each axis, the bound of a box that is farthest inside
   };
   constexpr std::size_t kLimits = 64;  // more, of a polygon of many sides, are left aside
   std::array<Limit, kLimits> limits;
@@ -161,8 +161,11 @@ void SpatialIndex::find(std::span<const HalfSpace> region, const Box& box, std::
     if (!(size > 0)) continue;
     const double at_centre = dot(h.normal, centre_), parts = std::fabs(h.offset) + 3 * size * norm(centre_);
     const double offset = (h.offset - at_centre - 0x1p-50 * parts) * per_size_ / size - 0x1p-19;
-    limits[limit_count++] = {static_cast<float>(h.normal.x / size), static_cast<float>(h.normal.y / size),
-                             static_cast<float>(h.normal.z / size), static_cast<float>(std::clamp(offset, -8.0, 8.0))};
+    limits[limit_count++] = {static_cast<float>(h.normal.x / size),
+                             static_cast<float>(h.normal.y / size),
+                             static_cast<float>(h.normal.z / size),
+                             static_cast<float>(std::clamp(offset, -8.0, 8.0)),
+                             {h.normal.x > 0, h.normal.y > 0, h.normal.z > 0}};
   }
   std::array<float, 3> box_lower, box_upper;
   for (int axis = 0; axis < 3; ++axis) {
@@ -176,13 +179,12 @@ void SpatialIndex::find(std::span<const HalfSpace> region, const Box& box, std::
   stack[top++] = 0;
   while (top > 0) {
     const Node& node = nodes_[static_cast<std::size_t>(stack[--top])];
-    Ints meets = (floats(node.lower[0]) <= box_upper[0]) & (floats(node.upper[0]) >= box_lower[0]) &
-                 (floats(node.lower[1]) <= box_upper[1]) & (floats(node.upper[1]) >= box_lower[1]) &
-                 (floats(node.lower[2]) <= box_upper[2]) & (floats(node.upper[2]) >= box_lower[2]);
+    Ints meets = (floats(node.bounds[0][0]) <= box_upper[0]) & (floats(node.bounds[1][0]) >= box_lower[0]) &
+                 (floats(node.bounds[0][1]) <= box_upper[1]) & (floats(node.bounds[1][1]) >= box_lower[1]) &
+                 (floats(node.bounds[0][2]) <= box_upper[2]) & (floats(node.bounds[1][2]) >= box_lower[2]);
     for (const Limit& h : std::span(limits).first(limit_count)) {
-      const Floats value = h.x * floats(h.x > 0 ? node.upper[0] : node.lower[0]) +
-                           h.y * floats(h.y > 0 ? node.upper[1] : node.lower[1]) +
-                           h.z * floats(h.z > 0 ? node.upper[2] : node.lower[2]);
+      const Floats value = h.x * floats(node.bounds[h.far[0]][0]) + h.y * floats(node.bounds[h.far[1]][1]) +
+                           h.z * floats(node.bounds[h.far[2]][2]);
       meets &= value >= h.offset;
     }
     using Bytes = signed char __attribute__((vector_size(kWidth)));

@@ -66,7 +66,7 @@ class SpatialIndex {
  private:
   static constexpr std::size_t kWidth = 8;
   struct alignas(64) Node {
-    std::array<std::array<float, kWidth>, 3> lower, upper;  ///< [axis][child], rounded outward
+    std::array<std::array<std::array<float, kWidth>, 3>, 2> bounds;  ///< [lower, upper][axis][child], rounded outward
     std::array<std::int32_t, kWidth> child;  ///< ≥ 0: a node; < 0: item −1 − child; unused places have an empty box
   };
 

@@ -2,10 +2,10 @@
 // The cones in which occluders are seen from the current view, kept because every occluder is met on the way to many
 // sources.
 
-#include <deque>
+#include <memory>
 #include <utility>
 
-#include "geometry/cone.h"
+#include "geometry/silhouette.h"
 #include "geometry/view.h"
 
 namespace exitance {
@@ -39,6 +39,18 @@ class ViewCones {
     Cone<Real>& cone = cached(static_cast<std::uint32_t>(soup_.facets().size()) + shell, is_new);
     if (is_new) set_silhouette(cone, shell);
     return cone;
+  }
+
+  /// The same edges of any shell that the point is outside of. Valid until the view moves.
+  const Silhouette<Real>& silhouette_of(std::uint32_t shell) {
+    if (silhouettes_.empty()) silhouettes_.resize(soup_.shells().size());
+    auto& [epoch, silhouette] = silhouettes_[shell];
+    if (epoch != view_.epoch() || !silhouette) {
+      epoch = view_.epoch();
+      if (!silhouette) silhouette = std::make_unique<Silhouette<Real>>();
+      set_silhouette(*silhouette, shell);
+    }
+    return *silhouette;
   }
 
   /// A facet's cone with the sides below the horizon.
@@ -76,17 +88,40 @@ class ViewCones {
     is_new = slot.epoch != epoch_;
     if (is_new) {
       slot = {epoch_, used_++};
-      if (cones_.size() < used_) cones_.emplace_back();
+      if (cones_.size() < used_) cones_.push_back(std::make_unique<Cone<Real>>());
     }
-    return cones_[slot.cone];
+    return *cones_[slot.cone];
   }
 
-  void set_silhouette(Cone<Real>& cone, std::uint32_t shell) {
+  /// Edges between faces that are seen from the front and others, which lie to their right.
+  void find_ring(std::uint32_t shell) {
     ring_.clear();
     for (const ShellEdge& edge : soup_.shells()[shell].edges) {
       const bool left = view_.side(edge.left) > 0, right = view_.side(edge.right) > 0;
       if (left != right) ring_.push_back(left ? std::pair(edge.from, edge.to) : std::pair(edge.to, edge.from));
     }
+  }
+
+  void set_silhouette(Silhouette<Real>& silhouette, std::uint32_t shell) {
+    find_ring(shell);
+    std::ranges::sort(ring_);
+    loop_.clear();
+    next_.clear();
+    for (const auto& [from, to] : ring_) {
+      loop_.push_back(&soup_.vertices()[from]);
+      const auto next = std::ranges::lower_bound(ring_, std::pair(to, 0u));  // the edges form closed rings
+      next_.push_back(static_cast<std::uint32_t>(next - ring_.begin()));
+    }
+    set_cone<Real>(silhouette.cone, view_.receiver().point, loop_, -1, nullptr, next_);
+    const auto& vertices = soup_.shells()[shell].vertices;
+    silhouette.is_whole = std::ranges::all_of(vertices, [&](std::uint32_t v) { return view_.horizon(v) > 0; });
+    if (!silhouette.is_whole) return;
+    const ViewFrame frame{view_.receiver().point, view_.receiver().normal, {}};
+    find_hidden(silhouette, {frame, view_.counts(), 0x1p-46});
+  }
+
+  void set_silhouette(Cone<Real>& cone, std::uint32_t shell) {
+    find_ring(shell);
     // The edges form one ring: each in turn gets behind it the one that starts where it ends.
     for (std::size_t k = 0; k + 1 < ring_.size(); ++k) {
       const auto next = std::find_if(ring_.begin() + static_cast<std::ptrdiff_t>(k) + 1, ring_.end(),
@@ -133,10 +168,12 @@ class ViewCones {
   View& view_;
   const PolygonSoup& soup_;
   std::vector<Slot> slots_;  // by facet, then by shell
-  std::deque<Cone<Real>> cones_;
+  std::vector<std::unique_ptr<Cone<Real>>> cones_;
   std::uint32_t epoch_ = 0, used_ = 0;
   std::vector<const Vec3*> loop_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ring_;
+  std::vector<std::uint32_t> next_;
+  std::vector<std::pair<std::uint32_t, std::unique_ptr<Silhouette<Real>>>> silhouettes_;  // by shell, with their epochs
 };
 
 }  // namespace exitance

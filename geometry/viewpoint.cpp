@@ -87,6 +87,8 @@ std::pair<Vec3, Vec3> line_of(const Vec3& p, const Vec3& n, const Vec3& q, const
 
 struct Viewpoint::State {
   static constexpr std::size_t kRecentBlockers = 4;
+  /// A shell of which this part of the facets is found is taken by its silhouette.
+  static constexpr std::size_t kFacetsOfSilhouette = 8;
 
   /// What stands between the point and a facet, kept while pieces of the same facet are asked about.
   struct Candidates {
@@ -96,7 +98,8 @@ struct Viewpoint::State {
     std::vector<std::uint32_t> facets;  // that will_add_only
   };
 
-  explicit State(const PolygonSoup& s) : soup(s), view(s), region(view), fine(view), finest(view) {}
+  explicit State(const PolygonSoup& s)
+      : soup(s), view(s), region(view), fine(view), finest(view), in_silhouette(s.shells().size(), 0) {}
 
   template <class Real>
   VisibleRegion<Real>& region_of();
@@ -109,6 +112,11 @@ struct Viewpoint::State {
   bool find_candidates(std::uint32_t facet);
   bool add_flush_faces(std::uint32_t facet);
   bool add_items(std::span<const std::uint32_t> items);
+  bool add_silhouettes();
+  bool is_of_silhouette(std::uint32_t facet) const {
+    const std::uint32_t shell = soup.facets()[facet].shell;
+    return shell != kNone && in_silhouette[shell] != 0;
+  }
   bool prepare(const Source& source, int& source_facing);
   void find_drop(const Source& source);
   int horizon_of_piece(std::size_t corner);
@@ -127,7 +135,7 @@ struct Viewpoint::State {
   const PolygonSoup& soup;
   View view;
   std::uint64_t extended = 0;
-  double hidden_value = 0;    // of the last sum, when its own error hides it
+  double hidden_value = 0;  // of the last sum, when its own error hides it
   bool tells_outline = false;
   std::uint64_t outline = 0;  // of the last answer
   std::vector<Ends> level;    // stretches along the horizon
@@ -143,6 +151,8 @@ struct Viewpoint::State {
   std::optional<Drop> dropped;  // if its corners lie in its plane up to rounding only
   std::vector<HalfSpace> half_spaces;
   std::vector<std::uint32_t> found;
+  std::vector<std::uint32_t> by_silhouette;  // shells
+  std::vector<std::uint32_t> in_silhouette;  // by shell: not 0 for those
 };
 
 template <>
@@ -218,8 +228,31 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   if (!add_flush_faces(facet)) return false;
   found.clear();
   soup.index().find(half_spaces, box, found);
+  if (!add_silhouettes()) return false;
   soup.prefetch(found);
   return add_items(found);
+}
+
+/// Adds the silhouettes of shells of which many facets were found; their facets are then not asked for. False when one
+/// hides all of the source. A source's own shell lies on both sides of its plane, or not in front of it at all.
+bool Viewpoint::State::add_silhouettes() {
+  for (const std::uint32_t s : by_silhouette) in_silhouette[s] = 0;
+  by_silhouette.clear();
+  const auto facets = static_cast<std::uint32_t>(soup.facets().size());
+  const std::uint32_t own = soup.facets()[region.source_facet()].shell;
+  for (const std::uint32_t item : found) {
+    const std::uint32_t shell = item < facets ? soup.facets()[item].shell : kNone;
+    if (shell != kNone && shell != own && in_silhouette[shell]++ == 0) by_silhouette.push_back(shell);
+  }
+  std::erase_if(by_silhouette, [&](std::uint32_t s) {
+    const Shell& shell = soup.shells()[s];
+    const bool is_taken = kFacetsOfSilhouette * in_silhouette[s] >= shell.facets.size() && view.outside(shell) &&
+                          region.place_of(shell) == VisibleRegion<double>::Place::in_front && region.has_silhouette(s);
+    in_silhouette[s] = 0;
+    return !is_taken;
+  });
+  for (const std::uint32_t s : by_silhouette) in_silhouette[s] = 1;
+  return std::ranges::all_of(by_silhouette, [&](std::uint32_t s) { return add_candidate({kNone, s}); });
 }
 
 /// What lies in the source's plane covers it without reaching in front of it: of a convex shell on the far side, which
@@ -237,10 +270,12 @@ bool Viewpoint::State::add_items(std::span<const std::uint32_t> items) {
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
   for (const std::uint32_t item : items) {
     if (item < facets) {
-      if (!add_candidate({item, kNone})) return false;
+      if (!is_of_silhouette(item) && !add_candidate({item, kNone})) return false;
       continue;
     }
     const Shell& shell = soup.shells()[item - facets];
+    const Facet& source = soup.facets()[region.source_facet()];
+    if (source.shell == item - facets && view.side(region.source_facet()) > 0) continue;  // convex, it lies behind
     const auto place = region.place_of(shell);
     if (place == VisibleRegion<double>::Place::nowhere) continue;
     if (place == VisibleRegion<double>::Place::in_front && view.outside(shell)) {
@@ -398,6 +433,8 @@ bool Viewpoint::State::put_items(const Source& source, int source_facing, std::s
   candidates.facets.assign(items.begin(), items.end());
   set_source<double>(source.facet, source_facing);
   region.will_add_only(items);
+  for (const std::uint32_t s : by_silhouette) in_silhouette[s] = 0;
+  by_silhouette.clear();
   return add_flush_faces(source.facet) && add_items(items);
 }
 

@@ -18,12 +18,13 @@
 //  - Edge-on occluders hide nothing.
 
 #include <algorithm>
-#include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 
 #include "geometry/chart.h"
 #include "geometry/cone.h"
+#include "geometry/sieve.h"
 #include "geometry/view_cones.h"
 
 namespace exitance {
@@ -38,7 +39,8 @@ struct Arc {
   bool of_source = true;
 };
 
-/// What hides: a facet, or a convex shell as a whole, whose front faces are seen as one convex cone.
+/// What hides: a facet, or a shell as a whole: of a convex one the front faces are seen as one convex cone, of others
+/// by their silhouette (silhouette.h).
 struct Occluder {
   std::uint32_t facet = kNone, shell = kNone;
 };
@@ -72,9 +74,12 @@ class VisibleRegion {
     return whole;
   }
 
-  /// Adds an occluder. A shell must be convex, with the point outside its box and all of it on the point's side of the
-  /// source's plane (place_of).
+  /// Adds an occluder. A shell must have the point outside its box and be all on the point's side of the source's plane
+  /// (place_of), and one that is not convex must have a whole silhouette.
   Effect add(const Occluder& occluder);
+
+  /// Whether a shell that is not convex, with the point outside its box, has a whole silhouette.
+  bool has_silhouette(std::uint32_t shell) { return cones_.silhouette_of(shell).is_whole; }
 
   enum class Place { nowhere, in_front, across };
 
@@ -94,19 +99,34 @@ class VisibleRegion {
   /// An occluder's cone and, of each side's edge, the stretch within the source's cone.
   struct Added {
     const Cone<Real>* cone = nullptr;
+    const Silhouette<Real>* silhouette = nullptr;  // of a shell that is not convex; `cone` is its edges
+    std::uint32_t shell = kNone;
     Cone<Real> clipped;
     std::vector<Stretch<Real>> edges;  // empty: bounds nothing
     bool bounds = false;               // whether any edge does
   };
 
+  Added& next_added() {
+    if (added_.size() == count_) added_.push_back(std::make_unique<Added>());
+    added_[count_]->silhouette = nullptr;
+    return *added_[count_];
+  }
+  bool is_held_back(std::uint32_t facet, int facing) const {
+    return std::is_same_v<Real, double> &&
+           sieve_.holds_back(soup_.facets()[facet].plane, soup_.first_corners(facet), facing);
+  }
   Effect add_facet(std::uint32_t facet);
   template <class Drops>
   Effect add_cone(Added& added, const Drops& drops);
+  Effect add_silhouette(Added& added);
+  bool is_apart(const Cone<Real>& cone);
   bool goes_on(const ConeSide<Real>& side, const Facet& occluder, int facing, bool covers);
 
   Signed<Real> plane_value(const Plane& plane, const Vec3& v, int sign) const;
   ConeSide<Real> closing_cut(const Plane& T, int facing_occluder) const;
   bool cover(const Added& a, const Added& b, bool b_first);
+  bool cover_by_silhouette(const Added& a, const Added& b);
+  Evaluation evaluation() { return {frame_, view_.counts(), bearable_angle_}; }
 
   struct FacedPlane {
     const Plane& plane;
@@ -143,16 +163,18 @@ class VisibleRegion {
   double bearable_angle_ = 0x1p-46;
   std::optional<std::span<const std::uint32_t>> added_only_;
   Cone<Real> source_;
-  std::deque<Added> added_;  // count_ of them in use; they may point into themselves
+  std::vector<std::unique_ptr<Added>> added_;  // count_ of them in use; they may point into themselves
   std::size_t count_ = 0;
   std::vector<std::vector<Stretch<Real>>> covered_source_;  // by source side
   std::vector<std::vector<Stretch<Real>>> covered_;         // by side of the occluder being finished
   Row<Real> row_;
+  LayersOverEdge<Real> layers_;
   std::vector<Row<Real>> source_rows_;  // of each of the source's sides, at the occluder that is being added
   std::vector<Signed<Real>> weight_;
   std::vector<Stretch<Real>> within_, open_;
   std::vector<const Vec3*> loop_;  // of the source
   const Drop* drop_ = nullptr;
+  Sieve sieve_;
   Chart chart_;
 };
 
@@ -192,6 +214,8 @@ bool VisibleRegion<Real>::set_source(std::uint32_t facet, int facing, PointLoop 
   }
   if (covered_source_.size() < source_.sides.size()) covered_source_.resize(source_.sides.size());
   for (auto& c : covered_source_) c.clear();
+  if constexpr (std::is_same_v<Real, double>)
+    sieve_.set(view_.receiver(), *source_plane_, facing, source_, soup_.vertices());
   chart_.centre_on(source_);
   return true;
 }
@@ -272,10 +296,15 @@ typename VisibleRegion<Real>::Place VisibleRegion<Real>::place_of(const Shell& s
 template <class Real>
 typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add(const Occluder& occluder) {
   if (occluder.shell == kNone) return add_facet(occluder.facet);
-  if (added_.size() == count_) added_.emplace_back();
-  Added& added = added_[count_];
-  added.cone = &cones_.of_shell(occluder.shell);
-  return add_cone(added, [](const auto&) { return false; });
+  Added& added = next_added();
+  if (soup_.shells()[occluder.shell].convex) {
+    added.cone = &cones_.of_shell(occluder.shell);
+    return add_cone(added, [](const auto&) { return false; });
+  }
+  added.silhouette = &cones_.silhouette_of(occluder.shell);
+  added.cone = &added.silhouette->cone;
+  added.shell = occluder.shell;
+  return add_silhouette(added);
 }
 
 template <class Real>
@@ -291,8 +320,8 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
       in_plane && (facing_source_ > 0 ? soup_.covers(facet, source_facet_) : soup_.covers_back(facet, source_facet_));
   // Facets of one polygon that lie in one plane only up to rounding may hide each other by as little.
   if (in_plane && !covers && f.polygon != facets[source_facet_].polygon) return Effect::none;
-  if (added_.size() == count_) added_.emplace_back();
-  Added& added = added_[count_];
+  if (!covers && is_held_back(facet, facing)) return Effect::none;
+  Added& added = next_added();
 
   PlaneSides of_source;
   if (!covers) {
@@ -413,18 +442,24 @@ typename VisibleRegion<Real>::PlaneSides VisibleRegion<Real>::sides_of(const Fac
   return sides;
 }
 
+/// Whether a side of the source keeps a cone apart from it. Leaves each side's values in source_rows_.
+template <class Real>
+bool VisibleRegion<Real>::is_apart(const Cone<Real>& cone) {
+  if (source_rows_.size() < source_.sides.size()) source_rows_.resize(source_.sides.size());
+  for (std::size_t k = 0; k < source_.sides.size(); ++k) {
+    fill(source_rows_[k], source_.sides[k], cone);
+    if (!source_rows_[k].any_positive()) return true;
+  }
+  return false;
+}
+
 /// Meets a cone with the source's: leaves in added.edges what lies within it, of edges of which drops(side) is not
 /// true, and in covered_source_ what it covers.
 template <class Real>
 template <class Drops>
 typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_cone(Added& added, const Drops& drops) {
   const Cone<Real>& cone = *added.cone;
-  // Apart, by a side of the source?
-  if (source_rows_.size() < source_.sides.size()) source_rows_.resize(source_.sides.size());
-  for (std::size_t k = 0; k < source_.sides.size(); ++k) {
-    fill(source_rows_[k], source_.sides[k], cone);
-    if (!source_rows_[k].any_positive()) return Effect::none;
-  }
+  if (is_apart(cone)) return Effect::none;
 
   // Apart, by a side of the occluder? And of each of the source's edges, which stretch does it cover?
   within_.clear();
@@ -464,10 +499,54 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_cone(Added& added,
   return Effect::part;
 }
 
+/// Meets a solid with the source, as add_cone.
+template <class Real>
+typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_silhouette(Added& added) {
+  const Cone<Real>& cone = *added.cone;
+  if (is_apart(cone)) return Effect::none;
+  bool any = false, whole = true;
+  std::vector<std::size_t> covered_before;
+  for (std::size_t k = 0; k < source_.sides.size(); ++k) {
+    auto& covered = covered_source_[k];
+    covered_before.push_back(covered.size());
+    const bool all =
+        layers_.find(source_, source_.sides[k], *added.silhouette, Tie::silhouette_moves, evaluation(), covered);
+    whole = whole && all;
+    any = any || covered.size() > covered_before.back();
+  }
+  added.edges.clear();
+  added.bounds = false;
+  for (std::size_t k = 0; k < cone.sides.size(); ++k) {
+    const ConeSide<Real>& edge = cone.sides[k];
+    Stretch<Real> stretch = edge.stretch;
+    stretch.empty = added.silhouette->is_hidden[k];
+    for (std::size_t j = 0; j < source_.sides.size() && !stretch.empty; ++j) {
+      const Row<Real>& row = source_rows_[j];
+      if (row.all_positive()) continue;
+      if (lies_in(row, edge)) {
+        stretch.empty = moved_sign(frame_, source_.sides[j].exact, cone.corners.exact(edge.from), Moved::point) < 0;
+      } else {
+        narrow_along(stretch, row, cone, edge, source_.sides[j]);
+      }
+    }
+    added.bounds = added.bounds || !stretch.empty;
+    added.edges.push_back(stretch);
+  }
+  if (!any && !added.bounds) return Effect::none;
+  if (whole && !added.bounds) {
+    for (std::size_t k = 0; k < source_.sides.size(); ++k) covered_source_[k].resize(covered_before[k]);
+    return Effect::whole;
+  }
+  chart_.set(count_, chart_.box_of(cone));
+  ++count_;
+  return Effect::part;
+}
+
 /// Adds to covered_ the stretches of a's edges, those of `open_`, that b covers on their outer sides, or stands for.
 /// False when no edge of a is left that is not surely covered from end to end.
 template <class Real>
 bool VisibleRegion<Real>::cover(const Added& a, const Added& b, bool b_first) {
+  if (b.silhouette) return cover_by_silhouette(a, b);
   const Cone<Real>& cone = *a.cone;
   const std::size_t n = cone.sides.size();
   within_ = open_;
@@ -480,6 +559,11 @@ bool VisibleRegion<Real>::cover(const Added& a, const Added& b, bool b_first) {
     for (std::size_t k = 0; k < n; ++k) {
       if (within_[k].empty) continue;
       if (lies_in(row_, cone.sides[k])) {
+        if (a.silhouette) {
+          within_[k].empty = moved_sign(frame_, side.exact, cone.corners.exact(cone.sides[k].from), Moved::point) < 0;
+          left += !within_[k].empty;
+          continue;
+        }
         // On one line. On opposite sides of it b covers a's outer side; on the same side, the first stands for both.
         if (row_.any_positive() && !b_first) within_[k].empty = true;
       } else {
@@ -495,6 +579,19 @@ bool VisibleRegion<Real>::cover(const Added& a, const Added& b, bool b_first) {
       covered_[k].push_back(within_[k]);
       open_[k].empty = within_[k].is_all_of(open_[k]);
     }
+    any_open = any_open || !open_[k].empty;
+  }
+  return any_open;
+}
+
+/// The same where b is a solid that is not convex. Of two of those the one of lower index moves to break ties.
+template <class Real>
+bool VisibleRegion<Real>::cover_by_silhouette(const Added& a, const Added& b) {
+  const Tie tie = a.silhouette && a.shell < b.shell ? Tie::edge_moves : Tie::silhouette_moves;
+  bool any_open = false;
+  for (std::size_t k = 0; k < a.cone->sides.size(); ++k) {
+    if (open_[k].empty) continue;
+    open_[k].empty = layers_.find(*a.cone, a.cone->sides[k], *b.silhouette, tie, evaluation(), covered_[k]);
     any_open = any_open || !open_[k].empty;
   }
   return any_open;
@@ -531,17 +628,20 @@ void VisibleRegion<Real>::for_each_arc(const Sink& sink) {
     finish_edge(source_, source_.sides[k], source_.sides[k].stretch, covered_source_[k], true, sink);
   }
   for (std::size_t i = 0; i < count_; ++i) {
-    const Added& a = added_[i];
+    const Added& a = *added_[i];
     if (!a.bounds) continue;
     const std::size_t n = a.edges.size();
     if (covered_.size() < n) covered_.resize(n);
-    for (std::size_t k = 0; k < n; ++k) covered_[k].clear();
+    for (std::size_t k = 0; k < n; ++k) {
+      covered_[k].clear();
+      if (a.silhouette) covered_[k] = a.silhouette->hidden[k];
+    }
     open_ = a.edges;
     ChartBox box;
     for (std::size_t k = 0; k < n; ++k) {
       if (!open_[k].empty) chart_.extend(box, *a.cone, a.cone->sides[k], open_[k]);
     }
-    chart_.until_overlap(box, i, count_, [&](std::size_t j) { return !cover(a, added_[j], j < i); });
+    chart_.until_overlap(box, i, count_, [&](std::size_t j) { return !cover(a, *added_[j], j < i); });
     for (std::size_t k = 0; k < n; ++k) {
       if (!open_[k].empty) finish_edge(*a.cone, a.cone->sides[k], a.edges[k], covered_[k], false, sink);
     }

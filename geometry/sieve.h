@@ -1,0 +1,124 @@
+#pragma once
+// Tells at a glance, in double precision, of most facets near a source that they hide nothing of it.
+
+#include <functional>
+#include <vector>
+
+#include "geometry/cone.h"
+#include "geometry/view.h"
+
+namespace exitance {
+
+/// Holds a facet back only if it surely hides nothing. Every test asks for more than a bound of its rounding, or for a
+/// corner that is the source's own and so lies on a side or plane by identity; whatever else is close to a decision
+/// goes through, to be decided exactly, and so do degenerate sources and facets, whose values are 0.
+class Sieve {
+ public:
+  /// The source's cone as it is seen from the receiver, on side `facing` of the source's plane. `vertices`: those that
+  /// facets' corners are numbered by.
+  void set(const Receiver& receiver, const Plane& plane, int facing, const Cone<double>& source,
+           std::span<const Vec3> vertices) {
+    x_ = receiver.point;
+    const auto number = [&](const ViewPoint& v) {
+      const bool is_vertex = v.kind == ViewPoint::Kind::vertex && !v.dropped && !std::less<>()(v.a, vertices.data()) &&
+                             std::less<>()(v.a, vertices.data() + vertices.size());
+      return is_vertex ? static_cast<std::uint32_t>(v.a - vertices.data()) : kNone;
+    };
+    corners_.clear();
+    for (std::size_t k = 0; k < source.corners.size(); ++k) {
+      if (!source.corners.is_kept(k)) continue;
+      const Vec<double> w = source.corners.w(k);
+      corners_.push_back(
+          {{w.x, w.y, w.z}, size_of({w.x, w.y, w.z}), source.corners.error(k), number(source.corners.exact(k))});
+    }
+    sides_.clear();
+    for (const ConeSide<double>& side : source.sides) {
+      const bool of_edge = side.exact.kind == ViewPlane::Kind::edge;
+      sides_.push_back({{side.m.x, side.m.y, side.m.z},
+                        side.error,
+                        of_edge ? number(source.corners.exact(side.from)) : kNone,
+                        of_edge ? number(source.corners.exact(side.to)) : kNone});
+    }
+    // The horizon: as for a closing side, with 5 u.
+    const Vec3 n = receiver.normal;
+    sides_.push_back({n, 5 * kRoundoff * size_of(n), kNone, kNone});
+    // The near side of the plane: as in VisibleRegion::sides_of.
+    const Vec3 to_x = x_ - plane.origin;
+    near_ = facing * plane.normal;
+    near_offset_ = dot(near_, to_x);
+    near_per_length_ = 12 * kRoundoff * plane.normal_size + 2 * plane.normal_error;
+    near_error_ = near_per_length_ * size_of(to_x);
+  }
+
+  /// Whether the facet surely hides nothing of the source: it lies outside of the source's cone, below the horizon or
+  /// behind the source's plane, or the source on the near side of its plane or outside of one side of its cone.
+  /// facing: the side from which the facet is seen, ±1.
+  bool holds_back(const Plane& plane, const FirstCorners& facet, int facing) const {
+    if (!facet.all) return false;
+    const Doubles x = load(facet.x.data()) - x_.x, y = load(facet.y.data()) - x_.y, z = load(facet.z.data()) - x_.z;
+    const Doubles size = magnitude(x) + magnitude(y) + magnitude(z);  // at least |w|
+    Numbers vertex;
+    std::memcpy(&vertex, facet.vertex.data(), sizeof vertex);
+    const auto is = [&](std::uint32_t number) { return __builtin_convertvector(vertex == number, Mask); };
+    for (const Side& side : sides_) {
+      const Doubles value = side.m.x * x + side.m.y * y + side.m.z * z;
+      if (all((value < -(side.per_length * size)) | is(side.from) | is(side.to))) return true;
+    }
+    // The facet's own plane and sides, w × w' from each corner to the next. |w_y w'_z| + |w_z w'_y| and its like are at
+    // most |w|₁|w'|₁; with two roundings of differences, of a product and of the subtraction, and four of the product
+    // with a corner, all in all 8 u |w|₁|w'|₁|v|₁. Twice that is given.
+    const Vec3 to_x = x_ - plane.origin, n = facing * plane.normal;
+    const double height = dot(n, to_x), per_length = 12 * kRoundoff * plane.normal_size + 2 * plane.normal_error,
+                 away = size_of(to_x);
+    const Doubles next_x = turned(x), next_y = turned(y), next_z = turned(z), product = size * turned(size);
+    const double sign = facing;
+    const Doubles m_x = sign * (y * next_z - z * next_y), m_y = sign * (z * next_x - x * next_z),
+                  m_z = sign * (x * next_y - y * next_x);
+    bool source_is_nearer = true;
+    Mask outside = ~Mask{},
+         behind = near_.x * x + near_.y * y + near_.z * z + near_offset_ < -(near_per_length_ * size + near_error_);
+    for (const SourceCorner& v : corners_) {
+      const Mask own = is(v.vertex);
+      behind |= own;
+      source_is_nearer =
+          source_is_nearer && (any(own) || n.x * v.w.x + n.y * v.w.y + n.z * v.w.z + height >
+                                               per_length * (v.size + away) + 2 * plane.normal_size * v.error);
+      outside &= (m_x * v.w.x + m_y * v.w.y + m_z * v.w.z > product * (16 * kRoundoff * v.size + 4 * v.error)) | own |
+                 turned(own);
+    }
+    return source_is_nearer || any(outside) || all(behind);
+  }
+
+ private:
+  using Mask = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+  using Numbers = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
+
+  static Doubles magnitude(const Doubles& v) { return v < 0 ? -v : v; }
+  /// Of the next corner in place of each.
+  template <class V>
+  static V turned(const V& v) {
+    return __builtin_shufflevector(v, v, 1, 2, 3, 0);
+  }
+  static bool any(const Mask& m) { return (m[0] | m[1] | m[2] | m[3]) != 0; }
+  static bool all(const Mask& m) { return (m[0] & m[1] & m[2] & m[3]) != 0; }
+  static double size_of(const Vec3& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
+
+  /// m · w ≥ 0 for all that can hide something, with error per_length |w|; and its edge's vertices.
+  struct Side {
+    Vec3 m;
+    double per_length;
+    std::uint32_t from, to;
+  };
+  struct SourceCorner {
+    Vec3 w;
+    double size, error;
+    std::uint32_t vertex;
+  };
+
+  Vec3 x_, near_;
+  double near_offset_ = 0, near_per_length_ = 0, near_error_ = 0;  // near_ · w + offset > 0 in front
+  std::vector<Side> sides_;
+  std::vector<SourceCorner> corners_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,197 @@
+#pragma once
+// The silhouette of a solid that need not be convex, and which stretches of an edge the solid covers.
+//
+// The faces of a solid that are seen from the front form layers over the directions from the point of view. Their
+// number changes by one across every edge of the silhouette (edges between a face seen from the front and one that is
+// not), up towards the front face, and is 0 below the horizon, above which the whole solid must lie. So along an edge
+// pq of anything it is found by going on from p along the great circle through q, half way round, to below the horizon:
+// where a silhouette edge cd crosses, the signs of c and d against the plane of pq differ, and the sign of p against
+// that of cd tells whether it crosses before or behind p, and which way. No corner of the chain, no depth and no other
+// layer matters: of 1,000 faces of a vase 60 edges are left (Appel 1967 counts layers in front of an edge in the same
+// way).
+//
+// Ties between a solid and another body are broken by moving the one of them by an infinitesimal (moved_sign), the same
+// for all questions, so that all answers are those of one and the same scene, whose form factor has the true one as its
+// limit. Along its own edges the solid is asked on their outer sides; where that does not break a tie, because two of
+// its edges coincide, there is no silhouette, and the solid's facets must be taken one by one.
+
+#include <algorithm>
+#include <vector>
+
+#include "geometry/cone.h"
+
+namespace exitance {
+
+template <class Real>
+struct Silhouette {
+  Cone<Real> cone;                                 ///< its edges, in any order; the solid on their inner sides
+  std::vector<std::vector<Stretch<Real>>> hidden;  ///< of each, what the solid itself covers on its outer side
+  std::vector<bool> is_hidden;                     ///< whether that is all of it
+  bool is_whole = false;  ///< above the horizon, without edges that coincide; otherwise it must not be used
+};
+
+/// What the functionals of one view are evaluated with.
+struct Evaluation {
+  const ViewFrame& frame;
+  StageCounts& counts;
+  double bearable_angle;  ///< of a crossing [rad]
+};
+
+/// Which way ties are broken between an edge and a silhouette.
+enum class Tie {
+  silhouette_moves,
+  edge_moves,
+  own_edge  ///< the edge is the silhouette's own, and asked about on its outer side
+};
+
+/// Stretches of an edge over which a solid has layers, appended to `covered`; true if that is all of it, exactly.
+/// Stretches overlap where there are several layers.
+template <class Real>
+class LayersOverEdge {
+ public:
+  bool find(const Cone<Real>& cone, const ConeSide<Real>& edge, const Silhouette<Real>& silhouette, Tie tie,
+            const Evaluation& evaluation, std::vector<Stretch<Real>>& covered) {
+    if (edge.exact.kind == ViewPlane::Kind::horizon) return false;  // all of the solid is above
+    const Cone<Real>& solid = silhouette.cone;
+    row_.fill(edge, solid.corners, evaluation.frame, evaluation.counts);
+    changes_.clear();
+    int before = 0;  // layers at the edge's start
+    int anchor = -1;
+    for (const ConeSide<Real>& crossed : solid.sides) {
+      const int side_from = side_of_corner(crossed.from, edge, solid, tie, evaluation.frame),
+                side_to = side_of_corner(crossed.to, edge, solid, tie, evaluation.frame);
+      if (side_from == side_to) continue;
+      // Below the horizon is the end of the way from an end that is above.
+      if (anchor < 0) anchor = is_above(cone.corners, edge.from, evaluation) ? 0 : 1;
+      const std::uint32_t ends[] = {edge.from, edge.to};
+      const Signed<Real> near = value_at_end(crossed, cone.corners, ends[anchor], tie, evaluation);
+      if (near.sign == 0) continue;  // at the very end that the way leaves
+      const int ahead = side_to * cone.turn * near.sign * solid.turn * (anchor == 0 ? 1 : -1);
+      if (ahead < 0) continue;
+      const Signed<Real> far = value_at_end(crossed, cone.corners, ends[1 - anchor], tie, evaluation);
+      if (far.sign == -near.sign) {
+        changes_.push_back(
+            crossing(crossed, cone, edge, anchor == 0 ? near : far, anchor == 0 ? far : near, evaluation));
+        changes_.back().step = anchor == 0 ? -near.sign : near.sign;
+        if (anchor == 0) before += near.sign;
+      } else {
+        before += near.sign;  // beyond the other end
+      }
+    }
+    return append(before, covered);
+  }
+
+ private:
+  struct Change {
+    Real t{}, error{};
+    int step = 0;
+  };
+
+  int side_of_corner(std::uint32_t k, const ConeSide<Real>& edge, const Cone<Real>& solid, Tie tie,
+                     const ViewFrame& frame) const {
+    const int sign = row_.sign(k);
+    if (sign != 0 || tie == Tie::own_edge) return sign != 0 ? sign : 1;
+    const int moved = tie == Tie::silhouette_moves
+                          ? moved_sign(frame, edge.exact, solid.corners.exact(k), Moved::point)
+                          : -moved_sign(frame, edge.exact, solid.corners.exact(k), Moved::point);
+    return moved != 0 ? moved : 1;
+  }
+
+  static Signed<Real> value_at_end(const ConeSide<Real>& crossed, const Corners<Real>& corners, std::uint32_t end,
+                                   Tie tie, const Evaluation& evaluation) {
+    Signed<Real> value = value_at(crossed, corners, end, evaluation.frame, evaluation.counts);
+    if (value.sign == 0 && tie != Tie::own_edge) {
+      const int moved = moved_sign(evaluation.frame, crossed.exact, corners.exact(end), Moved::edge);
+      value.sign = tie == Tie::silhouette_moves ? moved : -moved;
+    }
+    return value;
+  }
+
+  static bool is_above(const Corners<Real>& corners, std::uint32_t k, const Evaluation& evaluation) {
+    const ViewFrame& frame = evaluation.frame;
+    const Vec<Real> n{Real(frame.normal.x), Real(frame.normal.y), Real(frame.normal.z)};
+    const Real value = dot(n, corners.w(k)), size = norm(n),
+               error = 5 * roundoff<Real>() * size * corners.length(k) + 2 * size * corners.error(k);
+    if (value > error || value < -error) return value > 0;
+    return exact_value_at(frame, {ViewPlane::Kind::horizon}, corners.exact(k), evaluation.counts).sign > 0;
+  }
+
+  static Change crossing(const ConeSide<Real>& crossed, const Cone<Real>& cone, const ConeSide<Real>& edge,
+                         const Signed<Real>& at_from, const Signed<Real>& at_to, const Evaluation& evaluation) {
+    Stretch<Real> stretch;
+    narrow(stretch, at_from, at_to, Real(evaluation.bearable_angle / (edge.sweep + evaluation.bearable_angle * 0x1p20)),
+           [&](Signed<Real>& a, Signed<Real>& b, double accuracy) {
+             if constexpr (!std::is_floating_point_v<Real>) return;
+             const auto refine = [&](Signed<Real>& v, std::uint32_t end) {
+               const int sign = v.sign;
+               v = refined_value_at(crossed, cone.corners.exact(end), evaluation.frame, evaluation.counts, accuracy);
+               v.sign = sign;
+             };
+             refine(a, edge.from);
+             refine(b, edge.to);
+           });
+    return at_from.sign > 0 ? Change{stretch.hi, stretch.hi_error, 0} : Change{stretch.lo, stretch.lo_error, 0};
+  }
+
+  /// A stretch for every layer, the first that begins the first to end: so crossings that rounding puts in the wrong
+  /// order still end a stretch, with their errors.
+  bool append(int layers, std::vector<Stretch<Real>>& covered) {
+    if (changes_.empty()) {
+      if (layers > 0) covered.emplace_back();
+      return layers > 0;
+    }
+    std::ranges::stable_sort(changes_, {}, &Change::t);
+    begun_.clear();
+    std::size_t ended = 0;
+    for (int k = 0; k < layers; ++k) begun_.push_back({});
+    const auto end_one = [&](const Change& c) {
+      if (ended < begun_.size()) covered.push_back({begun_[ended].t, c.t, begun_[ended].error, c.error, false});
+      ++ended;
+    };
+    for (const Change& c : changes_) {
+      if (c.step > 0 && layers >= 0) begun_.push_back(c);
+      if (c.step < 0 && layers > 0) end_one(c);
+      layers += c.step;
+    }
+    while (ended < begun_.size()) end_one({Real(1), Real(0), 0});
+    return false;
+  }
+
+  Row<Real> row_;
+  std::vector<Change> changes_, begun_;
+};
+
+/// Whether edges that lie in one plane through the point of view run the same way and overlap.
+inline bool coincide(const Vec3& x, const ViewPlane& a, const ViewPlane& b) {
+  const auto run_along = [&](const Vec3& u, const Vec3& v) {  // from u to v the way that a runs
+    const Vec3 n = exact_cross(x, *a.c, *a.d), m = exact_cross(x, u, v);
+    const double along = n.x != 0 ? n.x * m.x : n.y != 0 ? n.y * m.y : n.z * m.z;
+    return along > 0;
+  };
+  return run_along(*b.c, *b.d) && run_along(*a.c, *b.d) && run_along(*b.c, *a.d);
+}
+
+/// Sets what the silhouette's edges hide of each other, once its cone is set.
+template <class Real>
+void find_hidden(Silhouette<Real>& silhouette, const Evaluation& evaluation) {
+  const Cone<Real>& cone = silhouette.cone;
+  silhouette.hidden.assign(cone.sides.size(), {});
+  silhouette.is_hidden.assign(cone.sides.size(), false);
+  LayersOverEdge<Real> layers;
+  Row<Real> row;
+  for (std::size_t k = 0; k < cone.sides.size(); ++k) {
+    const ConeSide<Real>& edge = cone.sides[k];
+    row.fill(edge, cone.corners, evaluation.frame, evaluation.counts);
+    for (std::size_t j = 0; j < cone.sides.size(); ++j) {
+      const ConeSide<Real>& other = cone.sides[j];
+      const bool in_one_plane = j != k && row.sign(other.from) == 0 && row.sign(other.to) == 0;
+      if (in_one_plane && coincide(evaluation.frame.x, edge.exact, other.exact)) {
+        silhouette.is_whole = false;
+        return;
+      }
+    }
+    silhouette.is_hidden[k] = layers.find(cone, edge, silhouette, Tie::own_edge, evaluation, silhouette.hidden[k]);
+  }
+}
+
+}  // namespace exitance

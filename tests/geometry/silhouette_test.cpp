@@ -1,0 +1,156 @@
+// Solids that are not convex, as occluders: their silhouettes against the oracle, where edges coincide, solids touch
+// and points lie in the planes of faces.
+
+#include "geometry/silhouette.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "geometry/view_cones.h"
+#include "geometry/viewpoint.h"
+#include "tests/geometry/placement.h"
+#include "tests/geometry/visibility_oracle.h"
+
+namespace exitance {
+namespace {
+
+using Faces = std::vector<Polygon>;
+
+/// Over a polygon of the lattice, counter-clockwise from above.
+Faces prism(const std::vector<std::array<int, 2>>& base, int bottom, int top) {
+  const auto ring = [&](int z) {
+    std::vector<Vec3> loop;
+    for (const auto& [x, y] : base) loop.push_back({double(x), double(y), double(z)});
+    return loop;
+  };
+  const auto low = ring(bottom), high = ring(top);
+  Faces faces{{{low.rbegin(), low.rend()}, {}}, {high, {}}};
+  for (std::size_t k = 0, n = base.size(); k < n; ++k) {
+    faces.push_back({{low[k], low[(k + 1) % n], high[(k + 1) % n], high[k]}, {}});
+  }
+  return faces;
+}
+
+/// A ring around (0, 0): walls without a top or bottom of their own but the annuli, cut into four each.
+Faces ring(int inner, int outer, int bottom, int top) {
+  Faces faces;
+  const std::array<std::array<int, 2>, 4> corner{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  const auto at = [&](std::size_t k, int radius, int z) {
+    return Vec3{double(radius * corner[k % 4][0]), double(radius * corner[k % 4][1]), double(z)};
+  };
+  for (std::size_t k = 0; k < 4; ++k) {
+    faces.push_back({{at(k, outer, bottom), at(k + 1, outer, bottom), at(k + 1, outer, top), at(k, outer, top)}, {}});
+    faces.push_back({{at(k + 1, inner, bottom), at(k, inner, bottom), at(k, inner, top), at(k + 1, inner, top)}, {}});
+    faces.push_back({{at(k, outer, top), at(k + 1, outer, top), at(k + 1, inner, top), at(k, inner, top)}, {}});
+    faces.push_back(
+        {{at(k, inner, bottom), at(k + 1, inner, bottom), at(k + 1, outer, bottom), at(k, outer, bottom)}, {}});
+  }
+  return faces;
+}
+
+/// A vase of several bands around the vertical, of which every other one is narrow.
+Faces vase(int sides, int bands, int bottom) {
+  const auto at = [&](int k, int band) {
+    const double turn = 2 * std::acos(-1.0) * k / sides, radius = band % 2 == 0 ? 1.5 : 0.5;
+    return Vec3{radius * std::cos(turn), radius * std::sin(turn), double(bottom) + 0.5 * band};
+  };
+  Faces faces(2);
+  for (int k = 0; k < sides; ++k) {
+    faces[0].outer.insert(faces[0].outer.begin(), at(k, 0));
+    faces[1].outer.push_back(at(k, bands));
+    for (int b = 0; b < bands; ++b) {  // bent: two triangles each
+      faces.push_back({{at(k, b), at((k + 1) % sides, b), at((k + 1) % sides, b + 1), at(k, b + 1)}, {}});
+    }
+  }
+  return faces;
+}
+
+const Faces& solid(int kind) {
+  static const std::array<Faces, 6> solids{
+      prism({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 2, 3),                          // an L
+      prism({{-2, -2}, {2, -2}, {2, 2}, {1, 2}, {1, -1}, {-1, -1}, {-1, 2}, {-2, 2}}, 2, 4),  // a U
+      prism({{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 2}, {1, 2}, {1, 1}, {0, 1}}, 3, 4),          // stairs
+      ring(1, 2, 3, 4),
+      vase(8, 4, 2),
+      prism({{-3, -1}, {3, -1}, {3, 1}, {1, 1}, {1, 0}, {-1, 0}, {-1, 1}, {-3, 1}}, 1, 2)};  // a bridge
+  return solids[static_cast<std::size_t>(kind)];
+}
+
+Faces moved(Faces faces, const Vec3& by) {
+  for (Polygon& f : faces) {
+    for (Vec3& v : f.outer) v = v + by;
+  }
+  return faces;
+}
+
+struct Question {
+  Vec3 point, normal;
+  Polygon source;
+  std::vector<Faces> solids;
+};
+
+Question question(Random& random, int solids) {
+  const auto whole = [&](int low, int high) { return double(random.whole(low, high)); };
+  Question q;
+  q.point = {whole(-3, 3), whole(-3, 3), whole(-1, 0)};
+  q.normal = {whole(-1, 1), whole(-1, 1), 2};
+  const double x = whole(-4, 0), y = whole(-4, 0), z = whole(4, 6);
+  q.source = {{{x, y, z}, {x, y + whole(2, 6), z}, {x + whole(2, 6), y + 5, z}, {x + 4, y, z}}, {}};
+  for (int k = 0; k < solids; ++k) {
+    q.solids.push_back(moved(solid(random.whole(0, 5)), {whole(-2, 2), whole(-2, 2), whole(-1, 0)}));
+  }
+  return q;
+}
+
+TEST(Silhouette, AgreesWithTheOracle) {
+  std::size_t asked = 0, by_silhouette = 0, partial = 0;
+  for (const Placement& place : placements("silhouettes")) {
+    Random random("silhouettes " + place.name);
+    for (int k = 0; k < 60; ++k) {
+      const Question q = question(random, 1 + k % 3);
+      std::vector<Polygon> polygons{place(q.source)};
+      std::vector<Role> roles{Role::patch};
+      std::vector<Occluder> occluders;
+      for (const Faces& faces : q.solids) {
+        Occluder& occluder = occluders.emplace_back();
+        occluder.solid = true;
+        for (const Polygon& f : faces) occluder.faces.push_back(place(f));
+        polygons.insert(polygons.end(), occluder.faces.begin(), occluder.faces.end());
+        roles.resize(polygons.size(), Role::solid_face);
+      }
+      if (!std::ranges::all_of(polygons, [](const Polygon& p) { return find_defect(p) == PolygonDefect::none; }))
+        continue;
+      const PolygonSoup soup(polygons, roles);
+      const Vec3 point = place(q.point), normal = place.normal(q.normal);
+      Viewpoint viewpoint(soup);
+      viewpoint.look_from({point, normal});
+      double F = 0, error = 0;
+      for (std::uint32_t f = soup.first_facet(0); f < soup.first_facet(1); ++f) {
+        const PointFormFactor answer = viewpoint.form_factor({f, {}});
+        if (answer.side != Side::front) continue;
+        F += answer.F;
+        error += answer.error;
+        partial += answer.visibility == Visibility::partial;
+      }
+      const auto truth = static_cast<double>(oracle_form_factor(point, normal, polygons[0], occluders).F);
+      EXPECT_LE(std::fabs(F - truth), error + 1e-17) << place.name << ", question " << k << ": " << F << ", " << truth;
+      EXPECT_LE(error, 1e-11) << place.name << ", question " << k;
+
+      View view(soup);
+      view.look_from({point, normal});
+      ViewCones<double> cones(view);
+      for (std::uint32_t s = 0; s < soup.shells().size(); ++s) {
+        ++asked;
+        by_silhouette += view.outside(soup.shells()[s]) && cones.silhouette_of(s).is_whole;
+      }
+    }
+  }
+  EXPECT_GT(by_silhouette, asked / 2) << "of " << asked;
+  EXPECT_GT(partial, asked / 8);
+}
+
+}  // namespace
+}  // namespace exitance
