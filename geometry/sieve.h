@@ -50,11 +50,17 @@ class Sieve {
     near_error_ = near_per_length_ * size_of(to_x);
   }
 
-  /// Whether the facet surely hides nothing of the source: it lies outside of the source's cone, below the horizon or
-  /// behind the source's plane, or the source on the near side of its plane or outside of one side of its cone.
+  enum class Verdict : std::uint8_t {
+    held_back,  ///< surely hides nothing of the source: it lies outside of the source's cone, below the horizon or
+                ///< behind the source's plane, or the source on the near side of its plane or outside of a side of its
+                ///< cone
+    between,  ///< surely lies on the near side of the source's plane, and part of the source on the far side of its own
+    unsure
+  };
+
   /// facing: the side from which the facet is seen, ±1.
-  bool holds_back(const Plane& plane, const FirstCorners& facet, int facing) const {
-    if (!facet.all) return false;
+  Verdict judge(const Plane& plane, const FirstCorners& facet, int facing) const {
+    if (!facet.all) return Verdict::unsure;
     const Doubles x = load(facet.x.data()) - x_.x, y = load(facet.y.data()) - x_.y, z = load(facet.z.data()) - x_.z;
     const Doubles size = magnitude(x) + magnitude(y) + magnitude(z);  // at least |w|
     Numbers vertex;
@@ -62,7 +68,7 @@ class Sieve {
     const auto is = [&](std::uint32_t number) { return __builtin_convertvector(vertex == number, Mask); };
     for (const Side& side : sides_) {
       const Doubles value = side.m.x * x + side.m.y * y + side.m.z * z;
-      if (all((value < -(side.per_length * size)) | is(side.from) | is(side.to))) return true;
+      if (all((value < -(side.per_length * size)) | is(side.from) | is(side.to))) return Verdict::held_back;
     }
     // The facet's own plane and sides, w × w' from each corner to the next. |w_y w'_z| + |w_z w'_y| and its like are at
     // most |w|₁|w'|₁; with two roundings of differences, of a product and of the subtraction, and four of the product
@@ -74,19 +80,22 @@ class Sieve {
     const double sign = facing;
     const Doubles m_x = sign * (y * next_z - z * next_y), m_y = sign * (z * next_x - x * next_z),
                   m_z = sign * (x * next_y - y * next_x);
-    bool source_is_nearer = true;
-    Mask outside = ~Mask{},
-         behind = near_.x * x + near_.y * y + near_.z * z + near_offset_ < -(near_per_length_ * size + near_error_);
+    const Doubles over_plane = near_.x * x + near_.y * y + near_.z * z + near_offset_,
+                  over_error = near_per_length_ * size + near_error_;
+    bool source_is_nearer = true, source_reaches_beyond = false;
+    Mask outside = ~Mask{}, behind = over_plane < -over_error;
     for (const SourceCorner& v : corners_) {
       const Mask own = is(v.vertex);
       behind |= own;
-      source_is_nearer =
-          source_is_nearer && (any(own) || n.x * v.w.x + n.y * v.w.y + n.z * v.w.z + height >
-                                               per_length * (v.size + away) + 2 * plane.normal_size * v.error);
+      const double value = n.x * v.w.x + n.y * v.w.y + n.z * v.w.z + height,
+                   error = per_length * (v.size + away) + 2 * plane.normal_size * v.error;
+      source_is_nearer = source_is_nearer && (any(own) || value > error);
+      source_reaches_beyond = source_reaches_beyond || value < -error;
       outside &= (m_x * v.w.x + m_y * v.w.y + m_z * v.w.z > product * (16 * kRoundoff * v.size + 4 * v.error)) | own |
                  turned(own);
     }
-    return source_is_nearer || any(outside) || all(behind);
+    if (source_is_nearer || any(outside) || all(behind)) return Verdict::held_back;
+    return source_reaches_beyond && all(over_plane > over_error) ? Verdict::between : Verdict::unsure;
   }
 
  private:

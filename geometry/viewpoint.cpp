@@ -94,7 +94,7 @@ struct Viewpoint::State {
   struct Candidates {
     std::uint32_t facet = kNone;
     bool blocked = false;
-    std::vector<Occluder> occluders;
+    std::vector<OccluderId> occluders;
     std::vector<std::uint32_t> facets;  // that will_add_only
   };
 
@@ -107,7 +107,7 @@ struct Viewpoint::State {
   bool set_source(std::uint32_t facet, int source_facing) {
     return region_of<Real>().set_source(facet, source_facing, corners, horizons, dropped ? &*dropped : nullptr);
   }
-  bool add_candidate(const Occluder& occluder);
+  bool add_candidate(const OccluderId& occluder);
   bool hidden_by_recent();
   bool find_candidates(std::uint32_t facet);
   bool add_flush_faces(std::uint32_t facet);
@@ -143,7 +143,7 @@ struct Viewpoint::State {
   VisibleRegion<long double> fine;
   VisibleRegion<Extended> finest;
   std::array<Candidates, 4> recent;  // the facets of a polygon take turns
-  std::vector<Occluder> blockers;    // of this view, the latest first
+  std::vector<OccluderId> blockers;  // of this view, the latest first
   std::vector<const Vec3*> corners;
   std::vector<int> horizons;
   ViewFrame frame;  // of the source that is prepared, if it is a piece
@@ -169,7 +169,7 @@ VisibleRegion<Extended>& Viewpoint::State::region_of() {
 }
 
 /// Adds an occluder to the current source; false when it hides all of it.
-bool Viewpoint::State::add_candidate(const Occluder& occluder) {
+bool Viewpoint::State::add_candidate(const OccluderId& occluder) {
   const auto effect = region.add(occluder);
   Candidates& candidates = candidates_of(region.source_facet());
   if (effect != VisibleRegion<double>::Effect::none) candidates.occluders.push_back(occluder);
@@ -185,7 +185,7 @@ bool Viewpoint::State::add_candidate(const Occluder& occluder) {
 /// to when sources that follow each other lie close together.
 bool Viewpoint::State::hidden_by_recent() {
   for (std::size_t k = 0; k < blockers.size(); ++k) {
-    const Occluder blocker = blockers[k];
+    const OccluderId blocker = blockers[k];
     if (blocker.shell != kNone &&
         region.place_of(soup.shells()[blocker.shell]) != VisibleRegion<double>::Place::in_front) {
       continue;
@@ -353,7 +353,7 @@ int Viewpoint::State::horizon_of_piece(std::size_t corner) {
 template <class Real>
 bool Viewpoint::State::add_candidates(std::uint32_t facet) {
   if (!candidates_of(facet).facets.empty()) region_of<Real>().will_add_only(candidates_of(facet).facets);
-  for (const Occluder& occluder : candidates_of(facet).occluders) {
+  for (const OccluderId& occluder : candidates_of(facet).occluders) {
     if (region_of<Real>().add(occluder) == VisibleRegion<Real>::Effect::whole) return false;
   }
   return true;
@@ -415,7 +415,7 @@ bool Viewpoint::State::put_occluders(const Source& source, int source_facing) {
     } else {
       candidates.blocked = true;
     }
-    for (const Occluder& o : candidates.occluders) {
+    for (const OccluderId& o : candidates.occluders) {
       if (o.shell == kNone) candidates.facets.push_back(o.facet);
     }
     std::ranges::sort(candidates.facets);

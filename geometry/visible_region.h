@@ -41,7 +41,7 @@ struct Arc {
 
 /// What hides: a facet, or a shell as a whole: of a convex one the front faces are seen as one convex cone, of others
 /// by their silhouette (silhouette.h).
-struct Occluder {
+struct OccluderId {
   std::uint32_t facet = kNone, shell = kNone;
 };
 
@@ -67,7 +67,7 @@ class VisibleRegion {
   enum class Effect { none, part, whole };
 
   /// Whether an occluder, which may be added, hides all of the source. Leaves the source with no occluders.
-  bool hides(const Occluder& occluder) {
+  bool hides(const OccluderId& occluder) {
     const bool whole = add(occluder) == Effect::whole;
     count_ = 0;
     for (auto& covered : covered_source_) covered.clear();
@@ -76,7 +76,7 @@ class VisibleRegion {
 
   /// Adds an occluder. A shell must have the point outside its box and be all on the point's side of the source's plane
   /// (place_of), and one that is not convex must have a whole silhouette.
-  Effect add(const Occluder& occluder);
+  Effect add(const OccluderId& occluder);
 
   /// Whether a shell that is not convex, with the point outside its box, has a whole silhouette.
   bool has_silhouette(std::uint32_t shell) { return cones_.silhouette_of(shell).is_whole; }
@@ -111,9 +111,9 @@ class VisibleRegion {
     added_[count_]->silhouette = nullptr;
     return *added_[count_];
   }
-  bool is_held_back(std::uint32_t facet, int facing) const {
-    return std::is_same_v<Real, double> &&
-           sieve_.holds_back(soup_.facets()[facet].plane, soup_.first_corners(facet), facing);
+  Sieve::Verdict judge(std::uint32_t facet, int facing) const {
+    if constexpr (!std::is_same_v<Real, double>) return Sieve::Verdict::unsure;
+    return sieve_.judge(soup_.facets()[facet].plane, soup_.first_corners(facet), facing);
   }
   Effect add_facet(std::uint32_t facet);
   template <class Drops>
@@ -147,7 +147,13 @@ class VisibleRegion {
     return row.sign(edge.from) == 0 && row.sign(edge.to) == 0;
   }
   void narrow_along(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone, const ConeSide<Real>& edge,
-                    const ConeSide<Real>& side);
+                    const ConeSide<Real>& side) {
+    const int from = row.sign(edge.from), to = row.sign(edge.to);
+    if (from <= 0 && to <= 0) stretch.empty = true;
+    if (from * to < 0) narrow_to_crossing(stretch, row, cone, edge, side);
+  }
+  void narrow_to_crossing(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone,
+                          const ConeSide<Real>& edge, const ConeSide<Real>& side);
 
   template <class Sink>
   void finish_edge(const Cone<Real>& cone, const ConeSide<Real>& side, const Stretch<Real>& edge,
@@ -258,8 +264,8 @@ ConeSide<Real> VisibleRegion<Real>::closing_cut(const Plane& T, int facing_occlu
 
 /// Narrows a stretch of an edge of a cone to where it is inside of the side whose values at the cone are in the row.
 template <class Real>
-void VisibleRegion<Real>::narrow_along(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone,
-                                       const ConeSide<Real>& edge, const ConeSide<Real>& side) {
+void VisibleRegion<Real>::narrow_to_crossing(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone,
+                                             const ConeSide<Real>& edge, const ConeSide<Real>& side) {
   narrow(stretch, row.at(edge.from), row.at(edge.to), Real(bearable_angle_ / (edge.sweep + bearable_angle_ * 0x1p20)),
          [&](Signed<Real>& a, Signed<Real>& b, double accuracy) {
            if constexpr (!std::is_floating_point_v<Real>) return;
@@ -294,7 +300,7 @@ typename VisibleRegion<Real>::Place VisibleRegion<Real>::place_of(const Shell& s
 }
 
 template <class Real>
-typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add(const Occluder& occluder) {
+typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add(const OccluderId& occluder) {
   if (occluder.shell == kNone) return add_facet(occluder.facet);
   Added& added = next_added();
   if (soup_.shells()[occluder.shell].convex) {
@@ -320,18 +326,20 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
       in_plane && (facing_source_ > 0 ? soup_.covers(facet, source_facet_) : soup_.covers_back(facet, source_facet_));
   // Facets of one polygon that lie in one plane only up to rounding may hide each other by as little.
   if (in_plane && !covers && f.polygon != facets[source_facet_].polygon) return Effect::none;
-  if (!covers && is_held_back(facet, facing)) return Effect::none;
+  const Sieve::Verdict verdict = covers ? Sieve::Verdict::unsure : judge(facet, facing);
+  if (verdict == Sieve::Verdict::held_back) return Effect::none;
+  const bool asks_planes = !covers && verdict != Sieve::Verdict::between;
   Added& added = next_added();
 
   PlaneSides of_source;
-  if (!covers) {
+  if (asks_planes) {
     of_source = sides_of_source({f.plane, facing}, loop);
     if (!of_source.behind) return Effect::none;
   }
   added.cone = &cones_.of_facet(facet);
   if (!ViewCones<Real>::reaches_above(*added.cone)) return Effect::none;
   bool pierces = false;
-  if (!covers) {
+  if (asks_planes) {
     const auto of_occluder = sides_of_occluder(*added.cone, loop);
     if (!of_occluder.in_front) return Effect::none;
     pierces = of_occluder.behind && of_source.in_front;
