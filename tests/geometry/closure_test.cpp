@@ -13,11 +13,10 @@
 #include "geometry/facets.h"
 #include "geometry/viewpoint.h"
 #include "tests/geometry/placement.h"
+#include "tests/geometry/solids.h"
 
 namespace exitance {
 namespace {
-
-using Faces = std::vector<Polygon>;
 
 Polygon turned_over(Polygon polygon) {
   std::reverse(polygon.outer.begin(), polygon.outer.end());
@@ -100,8 +99,8 @@ TEST(Closure, TheTopOfABentBoxCoversAnEarlierFaceInItsPlane) {
 
 constexpr int kSize = 4;  // of the lattice's room
 
-/// Boxes, some without one face, and sheets of one or two sides, some bent by very little, with corners on a small
-/// lattice; one in four only occludes.
+/// Boxes, some without one face and some with a notch, and sheets of one or two sides, some bent by very little, with
+/// corners on a small lattice; one in four only occludes.
 Room lattice_room(Random& random) {
   Room room({0, 0, 0}, {kSize, kSize, kSize});
   for (int count = random.whole(1, 5); count > 0; --count) {
@@ -113,10 +112,17 @@ Room lattice_room(Random& random) {
     }
     Faces faces = box(a, b);
     const auto face = static_cast<std::size_t>(random.whole(0, 5));
-    switch (random.whole(0, 4)) {
+    switch (random.whole(0, 5)) {
       case 0:
       case 1:
         break;
+      case 5: {
+        const int x0 = int(a.x), y0 = int(a.y), x1 = int(b.x), y1 = int(b.y);
+        if (x1 < x0 + 2 || y1 < y0 + 2) break;
+        const int x = random.whole(x0 + 1, x1 - 1), y = random.whole(y0 + 1, y1 - 1);
+        faces = prism({{x0, y0}, {x1, y0}, {x1, y}, {x, y}, {x, y1}, {x0, y1}}, int(a.z), int(b.z));
+        break;
+      }
       case 2:
         faces.erase(faces.begin() + static_cast<std::ptrdiff_t>(face));
         break;
