@@ -4,12 +4,14 @@
 #include <CGAL/Exact_rational.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <tuple>
 #include <utility>
 
 #include "geometry/facets.h"
 #include "geometry/near_pairs.h"
+#include "geometry/predicates.h"
 #include "geometry/projection.h"
 
 namespace exitance {
@@ -52,17 +54,29 @@ bool lies_at(const Loop& loop, int axis, double value) {
   return std::ranges::all_of(loop, [&](const Vec3& p) { return p[axis] == value; });
 }
 
+// Three corners that turn in the projection; collinear ones define no plane.
+std::array<Vec3, 3> spanning_corners(const FlatFacet& f) {
+  std::size_t k = 0;
+  const std::size_t n = f.loop.size();
+  while (turn(f.projection, f.loop[k], f.loop[(k + 1) % n], f.loop[(k + 2) % n]) == 0) ++k;
+  return {f.loop[k], f.loop[(k + 1) % n], f.loop[(k + 2) % n]};
+}
+
 bool in_one_plane(const FlatFacet& f, const FlatFacet& g) {
   const int axis = f.projection.axis;
   const double level = f.loop[0][axis];
   if (lies_at(f.loop, axis, level)) return lies_at(g.loop, axis, level);
-  // A corner that turns in the projection; collinear ones define no plane.
-  std::size_t k = 0;
-  const std::size_t n = f.loop.size();
-  while (turn(f.projection, f.loop[k], f.loop[(k + 1) % n], f.loop[(k + 2) % n]) == 0) ++k;
-  const auto a = point(f.loop[k]), b = point(f.loop[(k + 1) % n]), c = point(f.loop[(k + 2) % n]);
+  const auto corners = spanning_corners(f);
+  const auto a = point(corners[0]), b = point(corners[1]), c = point(corners[2]);
   return std::ranges::all_of(g.loop,
                              [&](const Vec3& p) { return CGAL::orientation(a, b, c, point(p)) == CGAL::COPLANAR; });
+}
+
+// Area in the plane by area in the projection. Of needles a rounded normal would have no digit left.
+double stretch(const FlatFacet& f) {
+  const auto [a, b, c] = spanning_corners(f);
+  const Vec3 normal = exact_cross(a, b, c);
+  return norm(normal) / std::fabs(normal[f.projection.axis]);
 }
 
 // +1 when a convex loop runs counter-clockwise in the projection, −1 when clockwise.
@@ -149,9 +163,7 @@ std::vector<CoplanarOverlap> coplanar_overlaps(std::span<const Polygon> polygons
         separated_by_edge(f.projection, g.loop, g_sense, f.loop)) {
       return;
     }
-    const Vec3 normal = area_vector(f.loop);
-    const double tilt = norm(normal) / std::fabs(normal[f.projection.axis]);
-    const double area = tilt * overlap_in_projection(f.projection, f.loop, f_sense, g.loop, g_sense);
+    const double area = stretch(f) * overlap_in_projection(f.projection, f.loop, f_sense, g.loop, g_sense);
     found[{f.polygon, g.polygon, f_sense == g_sense}].push_back({i, j, area});
   });
 

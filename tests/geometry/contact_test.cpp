@@ -91,5 +91,24 @@ TEST(Contact, HolesAndConcavePolygonsCountOnlyTheirArea) {
   EXPECT_DOUBLE_EQ(overlaps[1].area, 1);
 }
 
+/// The rounded normals of needles have no digit left. Area in units of the last place: these are halves of triangles of
+/// which two corners lie on a line through the origin and the third an ulp beside it.
+TEST(Contact, NeedlesHaveAreas) {
+  const double ulp = 0x1p-52;
+  const Vec3 directions[] = {{1, 0.75, 0.5}, {0.1, 0.7, 0.3}, {1. / 3, 1. / 7, 1. / 11}};
+  for (const Vec3& d : directions) {
+    const Vec3 end = 2.0 * d, aside = d + Vec3{0, 0, ulp};
+    const std::vector<Polygon> scene{{{{0, 0, 0}, end, aside}, {}}, {{{0, 0, 0}, aside, end}, {}}};
+    const auto overlaps = coplanar_overlaps(scene);
+    ASSERT_EQ(overlaps.size(), 1u);
+    EXPECT_FALSE(overlaps[0].same_facing);
+    // Half of |end × (aside − d)|, as (aside − d) is exactly what was added, rounded.
+    const double height = aside.z - d.z;
+    const double area = height * std::hypot(d.x, d.y);
+    ASSERT_GT(height, 0);
+    EXPECT_NEAR(overlaps[0].area, area, 1e-14 * area);
+  }
+}
+
 }  // namespace
 }  // namespace exitance
