@@ -52,11 +52,8 @@ std::string size_in_words(std::uint64_t bytes) {
 
 /// A scene cut into patches.
 struct Patches {
-  explicit Patches(const Scene& of_scene, double patch_size)
-      : scene(of_scene),
-        soup(make_soup(scene)),
-        mesh(make_patch_mesh(scene, soup, {.patch_size = patch_size})),
-        exchange(soup, mesh) {
+  Patches(const Scene& of_scene, const MeshOptions& options)
+      : scene(of_scene), soup(make_soup(scene)), mesh(make_patch_mesh(scene, soup, options)), exchange(soup, mesh) {
     if (mesh.patches.empty()) throw InputError(scene.name, 0, "no surface has an area; there is nothing to compute");
   }
   Patches(const Patches&) = delete;
@@ -142,7 +139,9 @@ class FormFactor {
     catch_interrupts();
 
     const Scene scene = scene_.read();
-    const Patches patches(scene, patch_size_);
+    report_.available_bytes = memory_limit_ ? static_cast<std::uint64_t>(std::min(*memory_limit_ * 0x1p30, 0x1p63))
+                                            : available_memory_bytes();
+    const Patches patches(scene, {.patch_size = patch_size_, .memory_limit = report_.available_bytes});
     describe(patches);
     report_.threads = static_cast<unsigned>(threads);
     report_.seconds.load = seconds_since(start);
@@ -185,8 +184,6 @@ class FormFactor {
 
   void refuse_what_does_not_fit(const ExchangeScene& scene) {
     report_.estimated_bytes = pair_rows_bytes(scene.size(), expected_pair_density(scene));
-    report_.available_bytes = memory_limit_ ? static_cast<std::uint64_t>(std::min(*memory_limit_ * 0x1p30, 0x1p63))
-                                            : available_memory_bytes();
     fmt::print(stderr, "memory: about {} for the form factors of {} patches, beside {} for the scene\n",
                size_in_words(report_.estimated_bytes), scene.size(), size_in_words(peak_memory_bytes()));
     if (report_.estimated_bytes <= report_.available_bytes) return;

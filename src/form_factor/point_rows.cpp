@@ -232,16 +232,17 @@ PointFormFactor patch_form_factor(const PatchMesh& mesh, const PolygonSoup& soup
 }
 
 double expected_row_length(const PatchMesh& mesh, const PolygonSoup& soup) {
-  constexpr std::size_t kSample = 8;
-  const std::size_t n = mesh.elements.size();
-  if (n == 0) return 0;
-  std::size_t entries = 0, rows = 0;
-  for (std::size_t k = 0; k < std::min(n, kSample); ++k) {
-    const std::size_t e = n * (2 * k + 1) / (2 * std::min(n, kSample));
-    entries += point_rows(mesh, soup, e, e + 1).F.F.size();
-    ++rows;
+  constexpr std::size_t kElements = 8, kPatches = 4096;
+  const std::size_t n = mesh.elements.size(), patches = mesh.patches.size();
+  const std::size_t rows = std::min(n, kElements), columns = std::min(patches, kPatches);
+  if (rows == 0) return 0;
+  RowMaker maker(mesh, soup);
+  std::size_t entries = 0;
+  for (std::size_t k = 0; k < rows; ++k) {
+    for (std::size_t c = 0; c < columns; ++c)
+      entries += maker.entry(n * (2 * k + 1) / (2 * rows), patches * (2 * c + 1) / (2 * columns)).F > 0;
   }
-  return static_cast<double>(entries) / static_cast<double>(rows);
+  return static_cast<double>(entries) / static_cast<double>(rows * columns) * static_cast<double>(patches);
 }
 
 }  // namespace exitance

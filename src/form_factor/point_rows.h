@@ -54,7 +54,8 @@ void point_column(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t pa
 PointFormFactor patch_form_factor(const PatchMesh& mesh, const PolygonSoup& soup, std::size_t receiver,
                                   std::size_t source);
 
-/// Entries of a row expected per element, from a sample of elements: for estimates of memory. Between 0 and patches.
+/// Entries of a row expected per element, from a sample of at most 8 elements and 4,096 patches, spread evenly: for
+/// estimates of memory. Between 0 and patches.
 double expected_row_length(const PatchMesh& mesh, const PolygonSoup& soup);
 
 }  // namespace exitance

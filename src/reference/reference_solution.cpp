@@ -98,7 +98,10 @@ class ReferenceSolver {
       : scene_(scene),
         options_(options),
         pairs_(pair_options_for(options.error)),
-        refined_(scene, soup, options.patch_size, kElementsPerEdge),
+        refined_(scene, soup,
+                 {.patch_size = options.patch_size,
+                  .elements_per_edge = kElementsPerEdge,
+                  .memory_limit = options.memory_limit}),
         soup_(soup) {
     if (refined_.mesh().patches.empty())
       throw InputError(scene.name, 0, "no surface has an area; there is nothing to solve");

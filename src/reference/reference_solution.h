@@ -19,7 +19,7 @@ namespace exitance {
 struct ReferenceOptions {
   double error = 1e-3;    ///< wanted of SolutionError::total; > 0
   double patch_size = 0;  ///< of the first mesh: longest edge of a patch [m]; 0: surfaces as they are
-  std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  ///< for form factors [bytes]
+  std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  ///< for mesh and form factors [bytes]
   /// Folder in which each level's rows of form factors are kept as they are finished, and found when the same work is
   /// begun again; empty: none. It is made, and removed when the error is reached and the solution was given to `saved`.
   std::filesystem::path checkpoint = {};

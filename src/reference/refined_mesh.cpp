@@ -112,11 +112,11 @@ Vec3 centroid(const AreaCell& cell) {
 
 }  // namespace
 
-RefinedMesh::RefinedMesh(const Scene& scene, const PolygonSoup& soup, double patch_size,
-                         std::uint32_t elements_per_edge)
-    : soup_(&soup), n_(elements_per_edge) {
+RefinedMesh::RefinedMesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options)
+    : soup_(&soup), n_(options.elements_per_edge) {
   if (n_ < 1) throw std::invalid_argument("RefinedMesh: a patch needs an element");
-  const PatchMesh start = make_patch_mesh(scene, soup, {.patch_size = patch_size});
+  refuse_too_large_a_mesh(scene, soup, options);
+  const PatchMesh start = make_patch_mesh(scene, soup, {.patch_size = options.patch_size});
   for (const Patch& patch : start.patches) {
     for (const PatchPiece& piece : start.pieces_of(patch)) {
       const std::vector<Vec3> loop = corners_of(soup, {piece.facet, start.loop(piece)});

@@ -23,7 +23,7 @@ class RefinedMesh {
   };
 
   /// The scene and its soup must outlive it. elements_per_edge ≥ 1; throws what make_patch_mesh does.
-  RefinedMesh(const Scene& scene, const PolygonSoup& soup, double patch_size, std::uint32_t elements_per_edge);
+  RefinedMesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options);
 
   /// Valid until the next split().
   const PatchMesh& mesh() const { return mesh_; }

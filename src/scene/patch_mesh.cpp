@@ -1,5 +1,7 @@
 #include "src/scene/patch_mesh.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +11,7 @@
 
 #include "geometry/radiator.h"
 #include "src/scene/input_error.h"
+#include "src/scene/sample_point.h"
 
 namespace exitance {
 namespace {
@@ -19,6 +22,9 @@ constexpr double kOnLine = 1e-9;
 
 /// A facet narrower than this share of its coordinates is a needle: points on it cannot be told from points on a line.
 constexpr double kNeedle = 0x1p-40;
+
+/// Room that growing arrays take, at most, for what they hold.
+constexpr double kGrowth = 3;
 
 bool lexicographically_less(const Vec3& a, const Vec3& b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
@@ -36,17 +42,6 @@ Vec3 along_edge(const Vec3& a, const Vec3& b, std::uint32_t k, std::uint32_t n) 
 Vec3 crossing(const Vec3& a, double sa, const Vec3& b, double sb) {
   if (lexicographically_less(b, a)) return crossing(b, sb, a, sa);
   return a + (sa / (sa - sb)) * (b - a);
-}
-
-Vec3 centroid(std::span<const Vec3> loop) {
-  Vec3 moment;
-  double area = 0;
-  for (std::size_t i = 2; i < loop.size(); ++i) {
-    const double weight = doubled_area(loop[0], loop[i - 1], loop[i]);
-    moment = moment + weight * ((loop[i - 1] - loop[0]) + (loop[i] - loop[0]));
-    area += weight;
-  }
-  return loop[0] + (1 / (3 * area)) * moment;
 }
 
 /// Of a convex loop; needles that are collinear up to rounding have one, too.
@@ -253,53 +248,121 @@ class SquareGrid {
 class Mesher {
  public:
   Mesher(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options)
-      : scene_(scene), soup_(soup), size_(options.patch_size), per_edge_(options.elements_per_edge) {
+      : scene_(scene), soup_(soup), samples_(soup), size_(options.patch_size), per_edge_(options.elements_per_edge) {
     if (!(size_ >= 0) || std::isinf(size_)) throw std::invalid_argument("the patch size must be a finite number ≥ 0");
     if (per_edge_ == 0) throw std::invalid_argument("elements per edge must be at least 1");
   }
 
   PatchMesh take() { return std::move(mesh_); }
 
+  /// About how many patches, elements and points a mesh has, at most.
+  struct Size {
+    double patches = 0, elements = 0, points = 0;
+  };
+
+  void add_size_of(std::uint32_t surface, Size& size) {
+    const auto add = [&](double patches, double elements, double points_each) {
+      size.patches += patches;
+      size.elements += elements;
+      size.points += points_each * (per_edge_ > 1 ? patches + elements : elements);
+    };
+    const Polygon& polygon = scene_.surfaces[surface].polygon;
+    const double e = per_edge_;
+    switch (begin(surface)) {
+      case Shape::none:
+        break;
+      case Shape::needle:
+        add(1, 1, static_cast<double>(polygon.outer.size()));
+        break;
+      case Shape::triangle: {
+        const double n = parts(longest_edge(facets_[0]));
+        add(n * n, n * n * e * e, 3);
+        break;
+      }
+      case Shape::quad: {
+        const double cells = parts(width(outer_)) * parts(height(outer_));
+        add(cells, cells * e * e, 4);
+        break;
+      }
+      case Shape::other: {
+        const SquareGrid grid(polygon);
+        const double m = parts(grid.extent(0)), n = parts(grid.extent(1));
+        // Besides the cells, what edges cut off.
+        const double edges = static_cast<double>(facets_.size()) * (m + n);
+        add(m * n, m * n * e * e + edges * e, 5);
+      }
+    }
+  }
+
+  void refuse_if_too_large(const Size& size, std::uint64_t memory_limit) const {
+    // Where bent quadrilaterals are cut along their diagonal there are more.
+    constexpr double kMostPoints = std::numeric_limits<std::uint32_t>::max() / 2.0;
+    const double bytes = kGrowth * (size.points * sizeof(Vec3) + size.patches * sizeof(Patch) +
+                                    size.elements * (sizeof(PatchPiece) + sizeof(Element)));
+    const bool too_many = !(size.points < kMostPoints);
+    if (!too_many && bytes <= static_cast<double>(memory_limit)) return;
+    throw LimitError(fmt::format(
+        "the mesh would have about {:.2g} patches and {:.2g} elements and take {:.3g} GiB of memory, {}; ask for "
+        "larger "
+        "patches or fewer elements",
+        size.patches, size.elements, bytes * 0x1p-30,
+        too_many ? "with more points than can be counted"
+                 : fmt::format("of which {:.3g} GiB may be used", static_cast<double>(memory_limit) * 0x1p-30)));
+  }
+
   void cut(std::uint32_t surface) {
+    switch (begin(surface)) {
+      case Shape::none:
+        break;
+      case Shape::needle:
+        keep_whole(scene_.surfaces[surface].polygon);
+        break;
+      case Shape::triangle:
+        cut_triangle(facets_[0]);
+        break;
+      case Shape::quad:
+        cut_quad({outer_[0], outer_[1], outer_[2], outer_[3]});
+        break;
+      case Shape::other:
+        cut_polygon(scene_.surfaces[surface].polygon);
+    }
+  }
+
+ private:
+  /// How a surface is cut.
+  enum class Shape : std::uint8_t { none, needle, triangle, quad, other };
+
+  Shape begin(std::uint32_t surface) {
     facets_.clear();
     first_facet_ = soup_.first_facet(surface);
     for (std::uint32_t f = first_facet_; f < soup_.first_facet(surface + 1); ++f) {
       Loop& loop = facets_.emplace_back();
       for (const Corner& c : soup_.corners(soup_.facets()[f])) loop.push_back(soup_.vertices()[c.vertex]);
     }
-    if (facets_.empty()) return;
     surface_ = surface;
+    if (facets_.empty()) return Shape::none;
     const Polygon& polygon = scene_.surfaces[surface].polygon;
-    const Loop outer = without_repetitions(polygon.outer);
+    outer_ = without_repetitions(polygon.outer);
     const auto needles = std::ranges::count_if(facets_, is_needle);
-    if (needles == std::ssize(facets_))
-      keep_whole(polygon);
-    else if (facets_.size() == 1 && facets_[0].size() == 3)
-      cut_triangle(facets_[0]);
-    else if (needles == 0 && polygon.holes.empty() && outer.size() == 4 && facets_.size() <= 2 &&
-             is_strictly_convex(outer))
-      cut_quad({outer[0], outer[1], outer[2], outer[3]});
-    else
-      cut_polygon(polygon);
+    if (needles == std::ssize(facets_)) return Shape::needle;
+    if (facets_.size() == 1 && facets_[0].size() == 3) return Shape::triangle;
+    const bool is_quad = needles == 0 && polygon.holes.empty() && outer_.size() == 4 && facets_.size() <= 2 &&
+                         is_strictly_convex(outer_);
+    return is_quad ? Shape::quad : Shape::other;
   }
 
- private:
-  /// Into how many parts something of this length is cut.
-  std::uint32_t parts(double total) const {
-    const double n = size_ > 0 ? std::ceil(total / size_ * (1 - 1e-12)) : 1;  // 3 / 0.3 is ten parts, rounded or not
-    if (n * per_edge_ > 1e9) refuse();
-    return std::max(1u, static_cast<std::uint32_t>(n));
+  static double width(const Loop& q) { return std::max(length(q[0], q[1]), length(q[3], q[2])); }
+  static double height(const Loop& q) { return std::max(length(q[0], q[3]), length(q[1], q[2])); }
+  static double longest_edge(const Loop& t) {
+    return std::max({length(t[0], t[1]), length(t[1], t[2]), length(t[2], t[0])});
   }
 
-  [[noreturn]] static void refuse() {
-    throw LimitError("the mesh would have more than 2^32 points; ask for larger patches or fewer elements");
+  /// Into how many parts something of this length is cut; a whole number.
+  double parts(double total) const {
+    // 3 / 0.3 is ten parts, rounded or not.
+    return size_ > 0 ? std::max(1.0, std::ceil(total / size_ * (1 - 1e-12))) : 1;
   }
-
-  void check_size(double elements, double points_each) const {
-    if (static_cast<double>(mesh_.points.size()) + 2 * points_each * elements >=
-        std::numeric_limits<std::uint32_t>::max())
-      refuse();
-  }
+  std::uint32_t whole_parts(double total) const { return static_cast<std::uint32_t>(parts(total)); }
 
   static bool is_strictly_convex(const Loop& quad) {
     const Vec3 normal = cross(quad[2] - quad[0], quad[3] - quad[1]);
@@ -351,8 +414,9 @@ class Mesher {
       if (!largest || piece.area > largest->area) largest = &piece;
     }
     element.facet = largest->facet;
-    element.sample =
-        largest->loop_count > 0 ? centroid(mesh_.loop(*largest)) : centroid(facets_[largest->facet - first_facet_]);
+    element.sample = samples_.choose(
+        largest->facet,
+        largest->loop_count > 0 ? mesh_.loop(*largest) : std::span<const Vec3>(facets_[largest->facet - first_facet_]));
     element.normal = unit_normal(soup_.facets()[element.facet].plane);
     mesh_.elements.push_back(element);
   }
@@ -374,17 +438,14 @@ class Mesher {
   }
 
   void keep_whole(const Polygon& polygon) {
-    check_size(static_cast<double>(facets_.size()), static_cast<double>(polygon.outer.size()));
     begin_patch(true, [] {});
     element_is_patch(polygon.outer);
     end_patch();
   }
 
   void cut_quad(const std::array<Vec3, 4>& q) {
-    const std::uint32_t m = parts(std::max(length(q[0], q[1]), length(q[3], q[2])));
-    const std::uint32_t n = parts(std::max(length(q[0], q[3]), length(q[1], q[2])));
+    const std::uint32_t m = whole_parts(width({q.begin(), q.end()})), n = whole_parts(height({q.begin(), q.end()}));
     const std::uint32_t e = per_edge_;
-    check_size(static_cast<double>(m) * n * e * e, 4);
     QuadGrid grid(q, facets_);
     grid.subdivide(m * e, n * e);
     Loop cell;
@@ -422,10 +483,9 @@ class Mesher {
   }
 
   void cut_triangle(const Loop& t) {
-    const std::uint32_t n = parts(std::max({length(t[0], t[1]), length(t[1], t[2]), length(t[2], t[0])}));
+    const std::uint32_t n = whole_parts(longest_edge(t));
     const std::uint32_t e = per_edge_;
     const std::uint32_t fine = n * e;
-    check_size(static_cast<double>(fine) * fine, 3);
     const auto point = [&](std::uint32_t i, std::uint32_t j) {
       const Vec3 left = along_edge(t[0], t[2], j, fine), right = along_edge(t[1], t[2], j, fine);
       return j == fine ? t[2] : along_edge(left, right, i, fine - j);
@@ -462,8 +522,7 @@ class Mesher {
 
   void cut_polygon(const Polygon& polygon) {
     const SquareGrid grid(polygon);
-    const std::uint32_t m = parts(grid.extent(0)), n = parts(grid.extent(1)), e = per_edge_;
-    check_size(static_cast<double>(m) * n * e * e + static_cast<double>(facets_.size()) * (m + n) * e, 5);
+    const std::uint32_t m = whole_parts(grid.extent(0)), n = whole_parts(grid.extent(1)), e = per_edge_;
     struct Part {
       std::uint64_t cell;
       std::uint32_t facet;
@@ -520,11 +579,13 @@ class Mesher {
 
   const Scene& scene_;
   const PolygonSoup& soup_;
+  SamplePoints samples_;
   double size_;
   std::uint32_t per_edge_;
   PatchMesh mesh_;
   std::uint32_t surface_ = 0, first_facet_ = 0;
   std::vector<Loop> facets_;  ///< of the current surface
+  Loop outer_;                ///< its outer corners, each once
 };
 
 }  // namespace
@@ -542,10 +603,19 @@ PolygonSoup make_soup(const Scene& scene) {
 }
 
 PatchMesh make_patch_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options) {
+  refuse_too_large_a_mesh(scene, soup, options);
   Mesher mesher(scene, soup, options);
   for (std::uint32_t k = 0; k < scene.surfaces.size(); ++k)
     if (!scene.surfaces[k].obstruction_only) mesher.cut(k);
   return mesher.take();
+}
+
+void refuse_too_large_a_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options) {
+  Mesher mesher(scene, soup, options);
+  Mesher::Size size;
+  for (std::uint32_t k = 0; k < scene.surfaces.size(); ++k)
+    if (!scene.surfaces[k].obstruction_only) mesher.add_size_of(k, size);
+  mesher.refuse_if_too_large(size, options.memory_limit);
 }
 
 }  // namespace exitance

@@ -2,6 +2,7 @@
 // Patches (which shoot) and elements (which receive): the surfaces of a scene cut to a requested size.
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,9 +28,10 @@ struct Patch {
 };
 
 /// The unit that receives, with one sample point: interior to it and to the facet it is on, away from the facet's edges
-/// (the centroid of its largest piece). Its pieces tile it exactly. The loop is its outline for drawing: where it has
-/// one piece, that piece; a quadrilateral bent along its surface's diagonal: the four corners; an element that is a
-/// whole surface: the outer loop, which tells nothing of the holes.
+/// (the centroid of its largest piece, or a point beside that where another surface ends or crosses: SamplePoints). Its
+/// pieces tile it exactly. The loop is its outline for drawing: where it has one piece, that piece; a quadrilateral
+/// bent along its surface's diagonal: the four corners; an element that is a whole surface: the outer loop, which tells
+/// nothing of the holes.
 struct Element {
   std::uint32_t patch = 0;
   std::uint32_t facet = 0;  ///< on which the sample point lies, by identity
@@ -57,6 +59,7 @@ struct PatchMesh {
 struct MeshOptions {
   double patch_size = 0;                ///< longest edge of a patch [m]; 0: every surface is one patch
   std::uint32_t elements_per_edge = 1;  ///< a quadrilateral patch has this many squared elements, a triangle likewise
+  std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  ///< for the mesh [bytes]
 };
 
 /// The polygon soup of a scene: surface k is polygon k, obstruction-only surfaces are sheets.
@@ -72,8 +75,12 @@ PolygonSoup make_soup(const Scene& scene);
 ///    what a cell holds of the polygon, on one or more facets; each of its elements lies on one facet.
 ///  - Facets narrower than 2^-40 of their coordinates, which rounded points cannot cut, stay whole.
 /// Points on an edge depend on its two ends and the number of parts only, bit for bit, whichever surface they belong
-/// to. patch_size ≥ 0 and finite, elements_per_edge ≥ 1, or std::invalid_argument; LimitError when the mesh would have
-/// more points than 32 bits count.
+/// to. patch_size ≥ 0 and finite, elements_per_edge ≥ 1, or std::invalid_argument; else what refuse_too_large_a_mesh
+/// throws, before anything is cut.
 PatchMesh make_patch_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options);
+
+/// Throws LimitError, with the numbers, when the mesh would have more points than 32 bits count or would take more
+/// memory, about, than the options allow.
+void refuse_too_large_a_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options);
 
 }  // namespace exitance

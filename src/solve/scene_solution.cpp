@@ -58,7 +58,9 @@ std::vector<double> patch_means(const Discretisation& d, std::span<const double>
 class SceneSolver {
  public:
   SceneSolver(const Scene& scene, const SolveOptions& options) : options_(options), result_(make_soup(scene)) {
-    result_.mesh = make_patch_mesh(scene, result_.soup, options.mesh);
+    MeshOptions mesh = options.mesh;
+    mesh.memory_limit = std::min(mesh.memory_limit, options.memory_limit);
+    result_.mesh = make_patch_mesh(scene, result_.soup, mesh);
     if (result_.mesh.patches.empty())
       throw InputError(scene.name, 0, "no surface has an area; there is nothing to solve");
     result_.discretisation = discretise(scene, result_.mesh);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <random>
 
 #include "src/scene/furnished_room.h"
 
@@ -133,10 +134,12 @@ TEST(PointRows, PointsBuriedInAContactSeeNothing) {
   add_box(scene, {-1, -0.5, 0}, {0, 0.5, 1});
   add_box(scene, {0, -0.5, 0}, {1, 0.5, 1});
   add_box(scene, {-1, -0.5, 1}, {0, 0.5, 2});
-  const Rows rows(scene);
+  Rows rows(scene);
+  EXPECT_NE(rows.mesh.elements[4].sample, (Vec3{0, 0, 0})) << "the line where two boxes meet on the floor";
+  rows.mesh.elements[4].sample = {0, 0, 0};
   const PointRows all = rows.all();
-  // The bottoms of all boxes, the touching sides of two, the top under the third one. (The floor's middle lies on the
-  // line where two boxes meet, and is buried, too.)
+  // The bottoms of all boxes, the touching sides of two, the top under the third one; and the floor's middle, where two
+  // boxes meet.
   EXPECT_EQ(all.statistics.covered_points, 7u);
   for (const std::size_t buried : {10u, 16u, 22u, 7u, 12u, 11u, 4u}) {
     for (const double F : row(all.F, buried)) EXPECT_EQ(F, 0) << buried;
@@ -266,6 +269,33 @@ TEST(PointRows, PatchesOfTurnedSurfacesInContactTileWhatIsSeen) {
         }
       }
     }
+  }
+}
+
+/// Edges of boxes, a sheet on the floor and one that pierces it run through sample points of the floor and of each
+/// other; turned, they miss them by a rounding.
+TEST(PointRows, SamplePointsKeepAwayFromEdgesOfOtherSurfaces) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int turn = 0; turn < 6; ++turn) {
+    Scene scene = empty_scene();
+    add_room(scene, {0, 0, 0}, {4, 4, 4});
+    add_box(scene, {0.5, 0.5, 0}, {1.5, 1.5, 1});
+    add_box(scene, {0.5, 0.5, 1}, {1, 1, 1.5});
+    add_box(scene, {1.5, 0, 0}, {2.5, 1, 0.5});
+    add(scene, {{2.5, 2.5, 0}, {3.5, 2.5, 0}, {3.5, 2.5, 1}, {2.5, 2.5, 1}});
+    add(scene, {{2.5, 2.5, 0}, {2.5, 2.5, 1}, {3.5, 2.5, 1}, {3.5, 2.5, 0}});
+    add(scene, {{0.5, 2.5, -0.5}, {1.5, 3.5, -0.5}, {1.5, 3.5, 1}, {0.5, 2.5, 1}});
+    add(scene, {{0.5, 2.5, -0.5}, {0.5, 2.5, 1}, {1.5, 3.5, 1}, {1.5, 3.5, -0.5}});
+    const Vec3 axis{any(random), any(random), any(random)};
+    const double angle = 3 * any(random), far_off = turn % 2 ? 1e3 : 0;
+    for (Surface& surface : scene.surfaces) {
+      for (Vec3& v : surface.polygon.outer) v = turned(v, axis, turn ? angle : 0) + Vec3{far_off, far_off, 0};
+    }
+    const PointRows all = Rows(scene, {.patch_size = 1}).all();
+    EXPECT_LT(all.statistics.closure_max_defect, far_off > 0 ? 1e-10 : 1e-12) << turn;
+    const std::vector<double> sums = row_sums(all.F);
+    EXPECT_LT(std::ranges::max(sums), 1 + 1e-10) << turn;
   }
 }
 

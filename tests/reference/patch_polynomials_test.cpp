@@ -55,7 +55,7 @@ class PatchPolynomialsTest : public testing::Test {
 
   const Scene scene_ = tilted();
   const PolygonSoup soup_ = make_soup(scene_);
-  const RefinedMesh refined_{scene_, soup_, 0, 4};
+  const RefinedMesh refined_{scene_, soup_, {.elements_per_edge = 4}};
   const PatchMesh& mesh_ = refined_.mesh();
 };
 
@@ -104,7 +104,7 @@ TEST_F(PatchPolynomialsTest, DegreeZeroLeavesMeansAlone) {
 }
 
 TEST_F(PatchPolynomialsTest, RefusesADegreeThatElementsDoNotDetermine) {
-  const RefinedMesh coarse(scene_, soup_, 0, 2);
+  const RefinedMesh coarse(scene_, soup_, {.elements_per_edge = 2});
   EXPECT_THROW(PatchPolynomials(coarse.mesh(), 2), std::invalid_argument);
   EXPECT_THROW(PatchPolynomials(mesh_, 4), std::invalid_argument);
   EXPECT_EQ(PatchPolynomials::degree_of_grid(1), 0u);

@@ -39,7 +39,7 @@ bool is_cut_at(const PatchMesh& mesh, std::uint32_t surface, double place) {
 TEST(RefinedMeshTest, TilesSurfacesAtEveryLevelAndKeepsOtherElements) {
   const Scene scene = read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml");
   const PolygonSoup soup = make_soup(scene);
-  RefinedMesh refined(scene, soup, 0, 4);
+  RefinedMesh refined(scene, soup, {.elements_per_edge = 4});
   const double area = area_of(refined.mesh());
   EXPECT_NEAR(area, 5 * 9 + 8 + 5, 1e-12);
   for (int level = 0; level < 4; ++level) {
@@ -69,7 +69,7 @@ TEST(RefinedMeshTest, TilesSurfacesAtEveryLevelAndKeepsOtherElements) {
 TEST(RefinedMeshTest, GridsTilePatchesAndFaceTheirWay) {
   const Scene scene = read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml");
   const PolygonSoup soup = make_soup(scene);
-  const RefinedMesh refined(scene, soup, 0, 3);
+  const RefinedMesh refined(scene, soup, {.elements_per_edge = 3});
   const PatchMesh& mesh = refined.mesh();
   for (const Patch& patch : mesh.patches) {
     EXPECT_EQ(patch.element_count, 9u);
@@ -85,7 +85,7 @@ TEST(RefinedMeshTest, PatchesAreCutAlongTheEdgesOfUmbraAndPenumbra) {
   for (const double turn : {0.0, 0.3}) {  // rotated about z: x no longer tells, but the number of parts does
     const Scene scene = half_shadow(0.75, turn);
     const PolygonSoup soup = make_soup(scene);
-    RefinedMesh refined(scene, soup, 0, 2);
+    RefinedMesh refined(scene, soup, {.elements_per_edge = 2});
     refined.split(std::vector<std::uint32_t>{0});
     // The edge of the blocker at x = 0.75, seen past from the emitter's sides x = 0 and x = 1: shadow edges at 1.5
     // (outside the floor) and 0.5.

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 SolutionRecord some_record() {
   const Scene scene = half_shadow(0.6, 0.3);
   const PolygonSoup soup = make_soup(scene);
-  RefinedMesh refined(scene, soup, 0, 4);
+  RefinedMesh refined(scene, soup, {.elements_per_edge = 4});
   refined.split(std::vector<std::uint32_t>{0});
   SolutionRecord record{.scene = "half shadow", .scene_hash = "hash", .unit = "W/m^2", .bands = 2};
   record.mesh = refined.mesh();

@@ -1,5 +1,6 @@
 #include "src/scene/patch_mesh.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -448,6 +449,37 @@ TEST(PatchMesh, RefusesSenselessSizes) {
   EXPECT_THROW(make_patch_mesh(scene, soup, {1, 0}), std::invalid_argument);
   EXPECT_THROW(make_patch_mesh(scene, soup, {1e-9, 1}), LimitError);
   EXPECT_THROW(make_patch_mesh(scene, soup, {1e-5, 1}), LimitError);
+  EXPECT_THROW(make_patch_mesh(scene, soup, {1e-320, 1}), LimitError);
+}
+
+TEST(PatchMesh, RefusesWhatWouldNotFitInMemory) {
+  const Scene scene = scene_of({{square(0, 0, 1, 1), {}}, {square(1, 0, 2, 1), {}}});
+  const PolygonSoup soup = make_soup(scene);
+  const std::uint64_t limit = 100'000'000;
+  EXPECT_EQ(make_patch_mesh(scene, soup, {0.01, 1, limit}).patches.size(), 20000u);
+  EXPECT_THROW(make_patch_mesh(scene, soup, {0.01, 7, limit}), LimitError);
+  try {
+    make_patch_mesh(scene, soup, {1e-4, 1, limit});
+    FAIL();
+  } catch (const LimitError& refused) {
+    EXPECT_THAT(refused.what(), testing::HasSubstr("2e+08 patches"));
+  }
+}
+
+/// The estimate is what is refused, so it must be no less than what a mesh takes, nor many times as much.
+TEST(PatchMesh, EstimatesItsMemory) {
+  const std::vector<Polygon> polygons = {{square(0, 0, 1, 1), {}}, kPentagon, kTriangle};
+  for (const Polygon& polygon : polygons) {
+    for (const std::uint32_t per_edge : {1u, 3u}) {
+      const Scene scene = scene_of({polygon});
+      const PolygonSoup soup = make_soup(scene);
+      const PatchMesh mesh = make_patch_mesh(scene, soup, {0.02, per_edge});
+      const std::uint64_t bytes = mesh.points.size() * sizeof(Vec3) + mesh.pieces.size() * sizeof(PatchPiece) +
+                                  mesh.patches.size() * sizeof(Patch) + mesh.elements.size() * sizeof(Element);
+      EXPECT_THROW(make_patch_mesh(scene, soup, {0.02, per_edge, bytes}), LimitError) << per_edge;
+      EXPECT_NO_THROW(make_patch_mesh(scene, soup, {0.02, per_edge, 8 * bytes})) << per_edge;
+    }
+  }
 }
 
 }  // namespace
