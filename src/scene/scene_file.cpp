@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "src/scene/face_mending.h"
@@ -39,10 +42,34 @@ class SceneFile {
  private:
   toml::table parse() const {
     const std::string bytes = read_bytes(path_);
+    refuse_long_keys(bytes);
     try {
       return toml::parse(bytes, path_.string());
     } catch (const toml::parse_error& error) {
       throw InputError(path_.string(), error.source().begin.line, fmt::format("is not TOML: {}", error.description()));
+    }
+  }
+
+  /// toml++ limits how deep values nest, but not how many parts a dotted key has: each is a table in the one before,
+  /// and those are freed by recursion, which overflows the stack.
+  void refuse_long_keys(std::string_view text) const {
+    constexpr int kMostParts = 32;
+    std::size_t line = 1;
+    int parts = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if (text[i] == '#') i = std::min(text.find('\n', i), text.size() - 1);
+      const char c = text[i];
+      if (c == '"' || c == '\'') {  // a part in quotes, or a text
+        const std::size_t end = text.find_first_of(std::string{c, '\n'}, i + 1);
+        if (end == std::string_view::npos) return;
+        i = text[end] == '\n' ? end - 1 : end;
+      } else if (c == '.') {
+        if (++parts >= kMostParts)
+          throw InputError(path_.string(), line, fmt::format("a key has more than {} parts; shorten it", kMostParts));
+      } else if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-' && c != ' ' && c != '\t') {
+        parts = 0;
+        line += c == '\n';
+      }
     }
   }
 

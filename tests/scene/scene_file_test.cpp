@@ -153,6 +153,18 @@ TEST_F(SceneFileTest, FurnishedRoom) {
   EXPECT_TRUE(is_closed(scene));
 }
 
+TEST_F(SceneFileTest, RefusesKeysOfMoreTablesThanCanBeFreed) {
+  std::string key = "a";
+  for (int k = 0; k < 100'000; ++k) key += k % 2 ? ".a" : " . \"a=b\"";
+  for (const std::string& text : {"[" + key + "]\n", "\n" + key + " = 1\n", "b = {" + key + " = 1}\n"})
+    EXPECT_THAT(error_of("[[object]]\n" + text), AllOf(HasSubstr("scene.toml:"), HasSubstr("parts")));
+  const std::string dots(100, '.');
+  EXPECT_EQ(read("# it's " + dots + "\n[[object]]\nname = \"" + dots +
+                 "\"\nmaterial = \"white\"\nbox = {min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 1.0]}\n")
+                .surfaces.size(),
+            6u);
+}
+
 TEST_F(SceneFileTest, MistakesNameTheirLine) {
   EXPECT_THAT(error_of("[[object]\n"), HasSubstr("scene.toml:4: "));
   EXPECT_THAT(error_of("[[object]]\nbox = {min = [0,0,0], max = [1,1,1]}\ncolour = 3\n"),
