@@ -42,6 +42,7 @@ std::string to_json(const Report& r) {
                      {"measured_points", r.measured_points},
                      {"covered_points", r.covered_points},
                      {"reciprocity_max_defect", or_null(r.reciprocity_max_defect)},
+                     {"ambient", r.ambient},
                      {"B_min", r.B_min},
                      {"B_max", r.B_max},
                      {"pairs",

@@ -41,7 +41,9 @@ struct Report {
   std::uint64_t measured_points = 0;         ///< sample points for which closure, covered points and pairs were counted
   std::uint64_t covered_points = 0;
   std::optional<double> reciprocity_max_defect;  ///< of pairs integrated anew; none where none was
-  double B_min = 0, B_max = 0;                   ///< over all bands, of the elements that see something
+  /// By band, of unit B: solution.ply and image.png show B + ρ · ambient where shooting was ended early; else empty.
+  std::vector<double> ambient;
+  double B_min = 0, B_max = 0;  ///< over all bands, of the elements that see something
 
   PairCounts pairs;
   std::map<std::string, std::uint64_t> predicate_stages;  ///< how many signs each stage decided

@@ -200,7 +200,7 @@ class ReferenceSolver {
     SolutionRecord& record = result_.record;
     record.mesh = mesh;
     record.degree = PatchPolynomials::degree_of_grid(kElementsPerEdge);
-    std::vector<double> B = solved(system, record.degree), lower = solved(system, record.degree - 1);
+    std::vector<double> B = solved(system, record.degree, start_), lower = solved(system, record.degree - 1, B);
     record.H = irradiance(system.F, shooting_, system.bands);
     const double of_solver = solver_error_, of_form_factors = integration_error(system, B);
     record.B = std::move(B);
@@ -218,13 +218,12 @@ class ReferenceSolver {
   }
 
   /// Means of B over elements that shoot as polynomials of that degree do. Their corrections are put into E, so that
-  /// what is solved has form factors as they are, with their proven bound.
-  std::vector<double> solved(RadiositySystem& system, std::uint32_t degree) {
+  /// what is solved has form factors as they are, with their proven bound. start: B to begin with; may be empty.
+  std::vector<double> solved(RadiositySystem& system, std::uint32_t degree, std::span<const double> start) {
     const PatchPolynomials polynomials(refined_.mesh(), degree);
     const std::vector<double> E = system.E;
     const double tolerance = std::max(kSolverShare * options_.error, 1e-13);
-    const GatherOptions how{.tolerance = tolerance, .stop = {}};
-    Solution solution = gather(system, how);
+    Solution solution = gather(system, {.tolerance = tolerance, .start = start});
     double changed = 0;
     for (int k = 0; k < kMostCorrections; ++k) {
       std::vector<double> shot = polynomials.shooting_values(solution.B, system.bands);
@@ -232,7 +231,7 @@ class ReferenceSolver {
       for (std::size_t i = 0; i < shot.size(); ++i) shot[i] -= solution.B[i];
       const std::vector<double> H = irradiance(system.F, shot, system.bands);
       for (std::size_t i = 0; i < E.size(); ++i) system.E[i] = E[i] + system.rho[i] * H[i];
-      Solution next = gather(system, how);
+      Solution next = gather(system, {.tolerance = tolerance, .start = solution.B});
       double largest = 0;
       changed = 0;
       for (std::size_t i = 0; i < E.size(); ++i) {
@@ -359,6 +358,30 @@ class ReferenceSolver {
         new_number[mesh_before_.patches[origins_[p].patch].element_first + e] = patch.element_first + e;
     }
     rows_ = kept_rows(rows_, new_number);
+    start_from(new_number);
+  }
+
+  /// The next level begins with the B of this one: of elements that are kept, and of new ones their old patch's mean.
+  void start_from(std::span<const std::uint32_t> new_number) {
+    const PatchMesh& mesh = refined_.mesh();
+    const std::uint32_t bands = result_.record.bands;
+    const std::vector<double>& B = result_.record.B;
+    start_.assign(mesh.elements.size() * bands, 0);
+    for (std::uint32_t e = 0; e < new_number.size(); ++e) {
+      if (new_number[e] != kNone)
+        std::copy_n(&B[e * std::size_t{bands}], bands, &start_[new_number[e] * std::size_t{bands}]);
+    }
+    for (std::uint32_t p = 0; p < origins_.size(); ++p) {
+      if (origins_[p].kept) continue;
+      const Patch &patch = mesh.patches[p], &before = mesh_before_.patches[origins_[p].patch];
+      for (std::uint32_t b = 0; b < bands; ++b) {
+        double mean = 0;
+        for (std::uint32_t e = before.element_first; e < before.element_first + before.element_count; ++e)
+          mean += mesh_before_.elements[e].area / before.area * B[e * std::size_t{bands} + b];
+        for (std::uint32_t e = patch.element_first; e < patch.element_first + patch.element_count; ++e)
+          start_[e * std::size_t{bands} + b] = mean;
+      }
+    }
   }
 
   using Origin = RefinedMesh::Origin;
@@ -372,6 +395,7 @@ class ReferenceSolver {
   std::uint32_t new_elements_ = 0;      // those come first
   PairRows rows_;
   ReferenceLevel level_;
+  std::vector<double> start_;     // B to begin the next level with, by element and band; empty on the first
   std::vector<double> shooting_;  // of the solution, by element and band
   std::vector<double> share_;     // of the mesh's squared error, by patch
   std::vector<double> change_;    // by patch: what dividing the patch it comes from has changed in it, squared

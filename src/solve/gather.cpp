@@ -85,13 +85,15 @@ class LogarithmicProgress {
 Solution gather(const RadiositySystem& s, const GatherOptions& options) {
   check(s);
   if (!(options.tolerance > 0)) throw std::invalid_argument("gather: the tolerance must be positive");
+  if (!options.start.empty() && options.start.size() != s.E.size())
+    throw std::invalid_argument("gather: the start must have a value for each patch and band");
   if (options.method == GatherMethod::direct && s.patches() > kDirectLimit) {
     throw LimitError("a direct solution takes at most " + std::to_string(kDirectLimit) + " patches, not " +
                      std::to_string(s.patches()) + "; use another method");
   }
 
   Solution solution;
-  solution.B = s.E;
+  solution.B = options.start.empty() ? s.E : std::vector<double>(options.start.begin(), options.start.end());
   if (s.patches() == 0) {
     solution.converged = true;
     return solution;

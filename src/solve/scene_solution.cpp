@@ -199,6 +199,7 @@ class SceneSolver {
     if (options_.max_shots) how.max_shots = *options_.max_shots;
     ShootSolution solution = shoot(result_.discretisation, column, how);
     result_.stopped = !solution.patches.converged && (solution.patches.iterations >= how.max_shots || stopped());
+    if (result_.stopped) result_.ambient = ambient_estimate(result_.discretisation, solution.unshot);
     result_.patches = std::move(solution.patches);
     result_.element_H = std::move(solution.element_H);
     result_.element_B = std::move(solution.element_B);

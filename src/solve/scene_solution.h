@@ -59,7 +59,10 @@ struct SceneSolution {
   std::vector<double> element_H, element_B;  ///< each element and band
   std::vector<double> element_row_sum;       ///< Σ_q F of each element; of the patches that shot, where `stopped`
   double form_factor_error = 0;              ///< what errors of form factors add to patches.error_bound
-  bool stopped = false;                      ///< max_shots or `stop` ended the work before the tolerance was reached
+  /// Of each band, what shooting that was ended early had still to spread (ambient_estimate): for display only, where
+  /// B + ρ · ambient is shown. Empty otherwise.
+  std::vector<double> ambient;
+  bool stopped = false;  ///< max_shots or `stop` ended the work before the tolerance was reached
 
   Receivers receivers = Receivers::points;
   /// Of `measured_points` elements: all of them, or a sample spread evenly where there is no matrix. Of receivers

@@ -37,6 +37,13 @@ std::vector<std::string> band_names(std::uint32_t bands) {
   return names;
 }
 
+// What is shown of B: where shooting was ended early, with the ambient estimate of what it left.
+std::vector<double> shown_B(const SceneSolution& s, std::span<const double> rho) {
+  std::vector<double> B = s.element_B;
+  for (std::size_t i = 0; i < B.size() && !s.ambient.empty(); ++i) B[i] += rho[i] * s.ambient[i % s.ambient.size()];
+  return B;
+}
+
 // Of the elements that see something; of all where none does.
 std::pair<double, double> range_of_B(const SceneSolution& s) {
   constexpr double far = std::numeric_limits<double>::infinity();
@@ -69,6 +76,7 @@ Report make_report(const Scene& scene, const SceneSolution& s) {
   report.form_factor_error = s.form_factor_error;
   report.energy_balance_defect = s.energy_balance_defect;
   if (s.closed && s.measured_points > 0) report.closure_max_defect = s.statistics.closure_max_defect;
+  report.ambient = s.ambient;
   report.measured_points = s.measured_points;
   report.covered_points = s.statistics.covered_points;
   report.reciprocity_max_defect = s.reciprocity_max_defect;
@@ -104,7 +112,8 @@ void write_solution(const std::filesystem::path& folder, const Scene& scene, con
     emits[e] = std::ranges::any_of(emission, [](double value) { return value > 0; });
     covered[e] = s.element_row_sum[e] == 0;
   }
-  const Appearance appearance{d.bands, s.element_B, emits, covered};
+  const std::vector<double> B = shown_B(s, rho);
+  const Appearance appearance{d.bands, B, emits, covered};
   write_ply(folder / "solution.ply", faces, appearance, Shading::smooth);
   const Camera camera = scene.camera ? *scene.camera : default_camera(faces.points(), s.closed);
   write_png(folder / "image.png", render(faces, appearance, camera));

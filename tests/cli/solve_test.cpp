@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "tests/cli/program.h"
 #include "tests/cli/solution.h"
@@ -49,6 +50,18 @@ TEST_F(SolveTest, FurnaceIsTwoOnEveryElement) {
   // Sixteen squares of each wall see all others and none of their own wall.
   EXPECT_EQ(result.at("pairs").at("open"), 384 * 80);
   EXPECT_EQ(result.at("pairs").at("facing_away"), 384 * 16);
+}
+
+/// What is still to be spread, spread evenly, is in a furnace what is missing on average.
+TEST_F(SolveTest, EndedEarlyShootingShowsTheAmbientEstimate) {
+  const std::string cube = data("furnace_cube.toml"), options = "--patch-size 0.5 --method shoot";
+  const auto early = solve(cube, options + " --shots 5", "early", 4);
+  const std::vector<double> B = vtp_array(file("early", "solution.vtp"), "B");
+  ASSERT_EQ(B.size(), 24u);
+  const double mean = std::accumulate(B.begin(), B.end(), 0.0) / 24, ambient = early.at("ambient").at(0);
+  EXPECT_LT(mean, 1.9);
+  EXPECT_NEAR(mean + 0.5 * ambient, 2, 1e-12);
+  EXPECT_TRUE(solve(cube, options, "whole").at("ambient").empty());
 }
 
 TEST_F(SolveTest, ClosedCornellBoxIsClosed) {

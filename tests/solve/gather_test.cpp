@@ -198,7 +198,21 @@ TEST(Gather, BadSystemsAreRefusedByType) {
   refused([](RadiositySystem& s) { s.F.column[0] = 17; });
   refused([](RadiositySystem& s) { s.F.columns = 4; });
   EXPECT_THROW(gather(good, by(GatherMethod::jacobi, 0)), std::invalid_argument);
+  const std::vector<double> too_short(good.E.size() - 1, 1.0);
+  EXPECT_THROW(gather(good, {.start = too_short}), std::invalid_argument);
   EXPECT_THROW(gather(random_enclosure(kDirectLimit + 1, 1, 0.5, 1.0, 1), by(GatherMethod::direct)), LimitError);
+}
+
+TEST(Gather, BeginsWithTheStartItIsGiven) {
+  const RadiositySystem system = random_enclosure(40, 3, 0.8, 1.0, 5);
+  for (const GatherMethod method : {GatherMethod::jacobi, GatherMethod::gauss_seidel, GatherMethod::krylov}) {
+    const Solution first = gather(system, {.method = method, .tolerance = 1e-8});
+    const Solution on = gather(system, {.method = method, .tolerance = 1e-8, .start = first.B});
+    EXPECT_EQ(on.iterations, 0u);
+    const Solution finer = gather(system, {.method = method, .start = first.B});
+    EXPECT_LT(finer.iterations, gather(system, {.method = method}).iterations);
+    EXPECT_LE(true_error(system, finer.B, true_solution(system)), finer.error_bound);
+  }
 }
 
 TEST(Gather, RowsAboveOneWithinTheirErrorsAreSolvedWithAWiderBound) {
