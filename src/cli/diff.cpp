@@ -6,7 +6,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
+#include "src/cli/console.h"
 #include "src/cli/verbs.h"
 #include "src/output/faces.h"
 #include "src/output/vtk.h"
@@ -77,13 +79,19 @@ class Diff {
                          {"error", number(comparison.error)},
                          {"error_worst_1_percent", number(comparison.error_worst_1_percent)},
                          {"pointwise_error", number(comparison.pointwise_error)}};
-      fmt::print("{}\n", json.dump(1, ' ', false, Json::error_handler_t::replace));
+      print_results(json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
       return;
     }
-    fmt::print("{}\n  {:<22}{}\n  {:<22}{}\n", reference.scene, "reference", in_words(reference), "current",
-               in_words(current));
-    fmt::print("  {:<22}{:.6g}\n  {:<22}{:.6g}\n  {:<22}{:.6g}\n", "error", comparison.error, "error of worst 1 %",
-               comparison.error_worst_1_percent, "pointwise error", comparison.pointwise_error);
+    std::string text = reference.scene + "\n";
+    const auto line = [&](std::string_view name, const std::string& value) {
+      text += fmt::format("  {:<22}{}\n", name, value);
+    };
+    line("reference", in_words(reference));
+    line("current", in_words(current));
+    line("error", fmt::format("{:.6g}", comparison.error));
+    line("error of worst 1 %", fmt::format("{:.6g}", comparison.error_worst_1_percent));
+    line("pointwise error", fmt::format("{:.6g}", comparison.pointwise_error));
+    print_results(printable(text));
   }
 
  private:

@@ -11,8 +11,10 @@
 #include <optional>
 #include <string>
 
+#include "src/cli/console.h"
 #include "src/cli/given_options.h"
 #include "src/cli/interrupt.h"
+#include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/scene_options.h"
 #include "src/cli/verbs.h"
@@ -49,6 +51,11 @@ Json json_of(const ReferenceLevel& level) {
           {"seconds", {{"form_factors", level.seconds_form_factors}, {"solve", level.seconds_solve}}}};
 }
 
+/// Names in files need not be UTF-8.
+std::string in_text(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 std::string in_words(const ReferenceLevel& level, std::size_t number) {
   return fmt::format(
       "level {}: {} patches, {} elements ({} new): error {:.3g} (mesh {:.3g}, form factors {:.3g}); {:.1f} s\n", number,
@@ -64,22 +71,22 @@ class Reference {
             "--error", options_.error,
             "Error wanted: area-weighted luminance norm (George et al. 1990, eq. 7), relative, as a function of "
             "the point")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str();
     verb.add_option("--patch-size", options_.patch_size,
                     "Longest edge of a patch of the first mesh [m]; 0: surfaces as they are")
-        ->check(CLI::NonNegativeNumber)
+        ->check(number_between(0))
         ->capture_default_str();
     verb.add_option("--time-limit", time_limit_, "Seconds after which to end with what there is, exit code 4")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     verb.add_option("--memory-limit", memory_limit_,
                     "Memory for form factors [GiB]; all that is available unless given")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
-        ->check(CLI::PositiveNumber);
+        ->check(whole_number_between(1, kMostThreads));
     verb.add_option("--save-every", options_.block_seconds,
                     "Seconds of work after which finished rows are saved beside FILE")
-        ->check(CLI::NonNegativeNumber)
+        ->check(number_between(0))
         ->capture_default_str();
     verb.add_flag("--json", json_, "Print the report as JSON");
     verb.add_option("-o,--output", file_, "File for the solution (.h5)")->required();
@@ -100,7 +107,7 @@ class Reference {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     catch_interrupts();
     const Scene scene = scene_.read();
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& warning : scene.warnings) print_warning(warning);
     if (already_there(scene)) return;
 
     const PolygonSoup soup = make_soup(scene);
@@ -121,9 +128,9 @@ class Reference {
     const SolutionRecord there = read_solution_archive(file_);
     const bool same_version = Json::parse(there.manifest).value("version", "") == build_manifest().version;
     if (there.scene_hash != scene_hash(scene) || !same_version || there.error.total > options_.error) return false;
-    fmt::print("{}",
-               json_ ? Json{{"scene", there.scene}, {"error", json_of(there.error)}, {"reused", true}}.dump(1) + "\n"
-                     : fmt::format("{} is there already, with an error of {:.3g}\n", file_, there.error.total));
+    print_results(
+        json_ ? in_text({{"scene", there.scene}, {"error", json_of(there.error)}, {"reused", true}})
+              : printable(fmt::format("{} is there already, with an error of {:.3g}\n", file_, there.error.total)));
     return true;
   }
 
@@ -152,17 +159,17 @@ class Reference {
                        {"scene_hash", solution.record.scene_hash},
                        {"options", given_options(verb_)},
                        {"levels", levels}};
-    return json.dump(1, ' ', false, Json::error_handler_t::replace);
+    return in_text(json);
   }
 
   void print(const ReferenceSolution& solution, double seconds) const {
     const SolutionRecord& record = solution.record;
     if (!json_) {
-      fmt::print(
+      print_results(printable(fmt::format(
           "{}: {} patches, {} elements, error {:.3g} (mesh {:.3g}, form factors {:.3g}, solver {:.3g}); {:.1f} s, "
           "{:.0f} MiB at most\n",
           record.scene, record.mesh.patches.size(), record.mesh.elements.size(), record.error.total, record.error.mesh,
-          record.error.integration, record.error.solver, seconds, static_cast<double>(peak_memory_bytes()) * 0x1p-20);
+          record.error.integration, record.error.solver, seconds, static_cast<double>(peak_memory_bytes()) * 0x1p-20)));
     } else {
       Json levels = Json::array();
       for (const ReferenceLevel& level : solution.levels) levels.push_back(json_of(level));
@@ -176,9 +183,8 @@ class Reference {
                          {"levels", levels},
                          {"seconds", seconds},
                          {"peak_memory_bytes", peak_memory_bytes()}};
-      fmt::print("{}\n", json.dump(1, ' ', false, Json::error_handler_t::replace));
+      print_results(in_text(json));
     }
-    std::fflush(stdout);
   }
 
   void end(const ReferenceSolution& solution) const {

@@ -63,6 +63,18 @@ TEST_F(BadInputTest, SceneWithoutArea) {
   EXPECT_THAT(outcome.err, testing::HasSubstr("no surface has an area"));
 }
 
+TEST_F(BadInputTest, PatchesThatWouldNotFitInMemory) {
+  const std::string cube = data("furnace_cube.toml");
+  for (const char* size : {"1e-5", "1e-30", "1e-320"}) {
+    const std::string with_size = cube + " --patch-size " + size;
+    for (const char* method : {" --method shoot", ""}) expect_of_scene(4, with_size + method, "patches");
+    expect(4, "formfactor " + with_size + " -o " + (scratch / "F.h5").string(), "patches");
+    expect(4, "reference " + with_size + " -o " + (scratch / "R.h5").string(), "patches");
+  }
+  EXPECT_FALSE(std::filesystem::exists(scratch / "F.h5.parts"));
+  EXPECT_FALSE(std::filesystem::exists(scratch / "R.h5.parts"));
+}
+
 TEST_F(BadInputTest, Folders) {
   const std::string file = write("file", "");
   expect(3, "solve " + data("furnace_cube.toml") + " -o " + file, file);
@@ -92,6 +104,7 @@ TEST_F(BadInputTest, Usage) {
 TEST_F(BadInputTest, Numbers) {
   const std::string solve = "solve " + data("furnace_cube.toml"),
                     formfactor = "formfactor " + data("furnace_cube.toml"),
+                    reference = "reference " + data("furnace_cube.toml") + " -o " + (scratch / "r.h5").string(),
                     check = "check " + data("furnace_cube.toml") + " --closure 5",
                     cases = "cases " + write("cases.json", "{\"cases\":[]}"),
                     generate = "generate furnished-room -o " + (scratch / "room.obj").string() + " --polygons 500";
@@ -115,6 +128,12 @@ TEST_F(BadInputTest, Numbers) {
                             {formfactor, "--memory-limit", false, false},
                             {formfactor, "--save-every", false, true},
                             {formfactor, "--seed", true, true},
+                            {reference, "--error", false, false},
+                            {reference, "--patch-size", false, true},
+                            {reference, "--time-limit", false, false},
+                            {reference, "--memory-limit", false, false},
+                            {reference, "--threads", true, false},
+                            {reference, "--save-every", false, true},
                             {check, "--seed", true, true},
                             {check, "--threads", true, false},
                             {"check " + data("furnace_cube.toml"), "--closure", true, false},

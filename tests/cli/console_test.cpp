@@ -23,6 +23,8 @@ TEST(StandardOutput, FailuresAreNoticed) {
   for (const std::string& arguments :
        {"cases " + cases, "check " + cube, "check --json " + cube, "solve " + cube, "solve --json " + cube,
         "formfactor " + cube, "formfactor " + cube + " -o " + (scratch / "F.csv").string(),
+        "reference " + cube + " -o " + (scratch / "r.h5").string(),
+        "reference --json " + cube + " -o " + (scratch / "s.h5").string(),
         "generate furnished-room --polygons 100 -o " + (scratch / "room.obj").string(), std::string("--help"),
         std::string("--version"), std::string("solve --help")}) {
     const Outcome outcome = on_a_full_disk(arguments);
