@@ -1,14 +1,12 @@
 # Every library is a Debian 12 package (scripts/packages.txt). CONFIG where CGAL's own find modules would shadow a package's.
 find_package(Boost 1.74 REQUIRED CONFIG)
 find_package(Eigen3 3.4 REQUIRED CONFIG)
-find_package(OpenMesh REQUIRED CONFIG)
 find_package(TBB REQUIRED CONFIG)
 find_package(embree 3 REQUIRED CONFIG)
 find_package(CLI11 REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
 find_package(tomlplusplus REQUIRED CONFIG)
 find_package(fmt REQUIRED CONFIG)
-find_package(spdlog REQUIRED CONFIG)
 find_package(PNG REQUIRED)
 # By pkg-config: the find script of CMake would need C to be enabled as well.
 find_package(PkgConfig REQUIRED)
