@@ -1,6 +1,7 @@
 # Every library is a Debian 12 package (scripts/packages.txt). CONFIG where CGAL's own find modules would shadow a package's.
 find_package(Boost 1.74 REQUIRED CONFIG)
 find_package(Eigen3 3.4 REQUIRED CONFIG)
+find_package(OpenMesh REQUIRED CONFIG)
 find_package(TBB REQUIRED CONFIG)
 find_package(embree 3 REQUIRED CONFIG)
 find_package(CLI11 REQUIRED CONFIG)

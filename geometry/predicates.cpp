@@ -219,7 +219,7 @@ ExactValue exact_value_at(const ViewFrame& frame, const ViewPlane& plane, const 
   return {plane.sign * value, 0x1p-48 * std::fabs(value), plane.sign * static_cast<int>(CGAL::sign(scaled))};
 }
 
-int moved_sign(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& point, Moved moved) {
+int gradient_sign(const ViewFrame& frame, const ViewPlane& plane) {
   using Vector = Difference<Exact>;
   const auto product = [](const Vector& a, const Vector& b) {
     Vector c = a;
@@ -228,38 +228,24 @@ int moved_sign(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& 
     c.z = a.x * b.y - a.y * b.x;
     return c;
   };
-  const auto combination = [](const Exact& s, const Vector& a, const Exact& t, const Vector& b) {
-    Vector c = a;
-    c.x = s * a.x - t * b.x;
-    c.y = s * a.y - t * b.y;
-    c.z = s * a.z - t * b.z;
-    return c;
-  };
-  const auto from_x = [&](const Vec3& v, bool dropped) { return difference<Exact>(frame, v, frame.x, dropped); };
   const auto first_sign = [&](const Vector& v) {
     for (const Exact* component : {&v.x, &v.y, &v.z}) {
       if (const int sign = static_cast<int>(CGAL::sign(*component)); sign != 0) return plane.sign * sign;
     }
     return 0;
   };
-  if (moved == Moved::edge) {
-    Vector w = from_x(*point.a, point.dropped);
-    if (point.kind != ViewPoint::Kind::vertex) {  // times a positive factor
-      const Exact a = weight<Exact>(frame, point, *point.a), b = weight<Exact>(frame, point, *point.b);
-      const Vector v = from_x(*point.b, point.dropped);
-      w = point.sign_at_a > 0 ? combination(a, v, b, w) : combination(b, w, a, v);
-    }
-    return first_sign(product(Vector(*plane.d, *plane.c), w));
-  }
   switch (plane.kind) {
     case ViewPlane::Kind::edge:
-      return first_sign(product(from_x(*plane.c, plane.dropped), from_x(*plane.d, plane.dropped)));
+      return first_sign(product(difference<Exact>(frame, *plane.c, frame.x, plane.dropped),
+                                difference<Exact>(frame, *plane.d, frame.x, plane.dropped)));
     case ViewPlane::Kind::horizon:
       return first_sign(Vector(frame.normal, Vec3{}));
     default: {
       const auto normal = [&](const PlanePoints& p) { return product(Vector(*p.b, *p.a), Vector(*p.c, *p.a)); };
-      return first_sign(combination(plane_value<Exact>(frame.S, frame.x), normal(*plane.T),
-                                    plane_value<Exact>(*plane.T, frame.x), normal(frame.S)));
+      const Exact S = plane_value<Exact>(frame.S, frame.x), T = plane_value<Exact>(*plane.T, frame.x);
+      Vector of_T = normal(*plane.T), of_S = normal(frame.S);
+      for (int axis = 0; axis < 3; ++axis) of_T[axis] = S * of_T[axis] - T * of_S[axis];
+      return first_sign(of_T);
     }
   }
 }

@@ -91,13 +91,10 @@ struct ExactValue {
 ExactValue exact_value_at(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& point, StageCounts& counts,
                           double accuracy = 0x1p-44);
 
-/// What breaks a tie, a functional that is 0 at a point: the point, or the edge of the plane, is taken to be moved by
-/// an infinitesimal (ε, ε², ε³) (Edelsbrunner and Mücke 1990, of a whole body at once).
-enum class Moved { point, edge };
-
-/// Sign of the functional at a point where it is 0, after that move: of the first component that is not 0 of its
-/// gradient, or of (d − c) × (v − x). 0 where the edge runs towards x, or in the direction of the point.
-int moved_sign(const ViewFrame& frame, const ViewPlane& plane, const ViewPoint& point, Moved moved);
+/// Sign that breaks a tie, a functional that is 0 at a point: what it becomes when the point is moved by an
+/// infinitesimal (ε, ε², ε³), the first sign that is not 0 of its gradient's components (after Edelsbrunner and Mücke
+/// 1990, but for a whole body at once). 0 for an edge that runs towards x.
+int gradient_sign(const ViewFrame& frame, const ViewPlane& plane);
 
 /// det(b − a, c − a, v − a) for the points of a plane, relative error at most 2^-48.
 ExactValue exact_plane_value(const PlanePoints& plane, const Vec3& v);

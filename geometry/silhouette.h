@@ -10,10 +10,11 @@
 // layer matters: of 1,000 faces of a vase 60 edges are left (Appel 1967 counts layers in front of an edge in the same
 // way).
 //
-// Ties between a solid and another body are broken by moving the one of them by an infinitesimal (moved_sign), the same
-// for all questions, so that all answers are those of one and the same scene, whose form factor has the true one as its
-// limit. Along its own edges the solid is asked on their outer sides; where that does not break a tie, because two of
-// its edges coincide, there is no silhouette, and the solid's facets must be taken one by one.
+// Ties of a corner of a solid with an edge of another body are broken by moving the one of them by an infinitesimal
+// (gradient_sign), the same for all edges, so that all answers are those of one and the same scene, whose form factor
+// has the true one as its limit; an end of pq in the plane of cd is no tie, because it decides over no length. Along
+// its own edges the solid is asked on their outer sides; where that does not break a tie, because two of its edges
+// coincide, there is no silhouette, and the solid's facets must be taken one by one.
 
 #include <algorithm>
 #include <vector>
@@ -64,18 +65,18 @@ class LayersOverEdge {
       // Below the horizon is the end of the way from an end that is above.
       if (anchor < 0) anchor = is_above(cone.corners, edge.from, evaluation) ? 0 : 1;
       const std::uint32_t ends[] = {edge.from, edge.to};
-      const Signed<Real> near = value_at_end(crossed, cone.corners, ends[anchor], tie, evaluation);
-      if (near.sign == 0) continue;  // at the very end that the way leaves
+      const Signed<Real> near = value_at(crossed, cone.corners, ends[anchor], evaluation.frame, evaluation.counts);
+      if (near.sign == 0) continue;  // crosses at the very end that the way leaves, or far below
       const int ahead = side_to * cone.turn * near.sign * solid.turn * (anchor == 0 ? 1 : -1);
       if (ahead < 0) continue;
-      const Signed<Real> far = value_at_end(crossed, cone.corners, ends[1 - anchor], tie, evaluation);
+      const Signed<Real> far = value_at(crossed, cone.corners, ends[1 - anchor], evaluation.frame, evaluation.counts);
       if (far.sign == -near.sign) {
         changes_.push_back(
             crossing(crossed, cone, edge, anchor == 0 ? near : far, anchor == 0 ? far : near, evaluation));
         changes_.back().step = anchor == 0 ? -near.sign : near.sign;
         if (anchor == 0) before += near.sign;
       } else {
-        before += near.sign;  // beyond the other end
+        before += near.sign;  // beyond the other end, or there
       }
     }
     return append(before, covered);
@@ -91,20 +92,8 @@ class LayersOverEdge {
                      const ViewFrame& frame) const {
     const int sign = row_.sign(k);
     if (sign != 0 || tie == Tie::own_edge) return sign != 0 ? sign : 1;
-    const int moved = tie == Tie::silhouette_moves
-                          ? moved_sign(frame, edge.exact, solid.corners.exact(k), Moved::point)
-                          : -moved_sign(frame, edge.exact, solid.corners.exact(k), Moved::point);
-    return moved != 0 ? moved : 1;
-  }
-
-  static Signed<Real> value_at_end(const ConeSide<Real>& crossed, const Corners<Real>& corners, std::uint32_t end,
-                                   Tie tie, const Evaluation& evaluation) {
-    Signed<Real> value = value_at(crossed, corners, end, evaluation.frame, evaluation.counts);
-    if (value.sign == 0 && tie != Tie::own_edge) {
-      const int moved = moved_sign(evaluation.frame, crossed.exact, corners.exact(end), Moved::edge);
-      value.sign = tie == Tie::silhouette_moves ? moved : -moved;
-    }
-    return value;
+    const int moved = gradient_sign(frame, edge.exact);
+    return moved == 0 ? 1 : tie == Tie::silhouette_moves ? moved : -moved;
   }
 
   static bool is_above(const Corners<Real>& corners, std::uint32_t k, const Evaluation& evaluation) {
@@ -122,13 +111,11 @@ class LayersOverEdge {
     narrow(stretch, at_from, at_to, Real(evaluation.bearable_angle / (edge.sweep + evaluation.bearable_angle * 0x1p20)),
            [&](Signed<Real>& a, Signed<Real>& b, double accuracy) {
              if constexpr (!std::is_floating_point_v<Real>) return;
-             const auto refine = [&](Signed<Real>& v, std::uint32_t end) {
-               const int sign = v.sign;
-               v = refined_value_at(crossed, cone.corners.exact(end), evaluation.frame, evaluation.counts, accuracy);
-               v.sign = sign;
+             const auto refined = [&](std::uint32_t end) {
+               return refined_value_at(crossed, cone.corners.exact(end), evaluation.frame, evaluation.counts, accuracy);
              };
-             refine(a, edge.from);
-             refine(b, edge.to);
+             a = refined(edge.from);
+             b = refined(edge.to);
            });
     return at_from.sign > 0 ? Change{stretch.hi, stretch.hi_error, 0} : Change{stretch.lo, stretch.lo_error, 0};
   }

@@ -532,7 +532,7 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_silhouette(Added& 
       const Row<Real>& row = source_rows_[j];
       if (row.all_positive()) continue;
       if (lies_in(row, edge)) {
-        stretch.empty = moved_sign(frame_, source_.sides[j].exact, cone.corners.exact(edge.from), Moved::point) < 0;
+        stretch.empty = gradient_sign(frame_, source_.sides[j].exact) < 0;
       } else {
         narrow_along(stretch, row, cone, edge, source_.sides[j]);
       }
@@ -568,7 +568,7 @@ bool VisibleRegion<Real>::cover(const Added& a, const Added& b, bool b_first) {
       if (within_[k].empty) continue;
       if (lies_in(row_, cone.sides[k])) {
         if (a.silhouette) {
-          within_[k].empty = moved_sign(frame_, side.exact, cone.corners.exact(cone.sides[k].from), Moved::point) < 0;
+          within_[k].empty = gradient_sign(frame_, side.exact) < 0;
           left += !within_[k].empty;
           continue;
         }

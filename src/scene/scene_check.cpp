@@ -10,6 +10,7 @@
 #include "geometry/contact.h"
 #include "geometry/spatial_index.h"
 #include "geometry/surface_pieces.h"
+#include "src/scene/boundary_rings.h"
 #include "src/scene/material_check.h"
 #include "src/scene/scene_extent.h"
 
@@ -25,7 +26,7 @@ struct KindText {
 };
 
 // In the order of FindingKind.
-constexpr std::array<KindText, 16> kTexts{{
+constexpr std::array<KindText, 17> kTexts{{
     {"non_finite", Severity::error, "", "faces with a coordinate that is not a finite number",
      "correct or remove them"},
     {"bad_extent", Severity::error, "",
@@ -52,6 +53,8 @@ constexpr std::array<KindText, 16> kTexts{{
      "solids may touch so; otherwise orient neighbouring faces alike and remove inner walls"},
     {"open_edge", Severity::note, "m", "edges that no other face continues; their length is",
      "holes let light escape; close them, or leave the scene open"},
+    {"boundary_ring", Severity::note, "m", "rings of edges that bound the mesh of an object; their length is",
+     "holes, or the rims of sheets: an object that is meant to be closed lacks faces there"},
     {"contact_edge", Severity::note, "m", "edges that end on the surface of another piece; their length is",
      "the contact closes them; nothing to do"},
     {"overlap_same_facing", Severity::warning, "m^2",
@@ -118,6 +121,7 @@ class SceneChecker {
     check_edges_of_objects();
     check_overlaps();
     check_pieces();
+    check_boundary_rings();
     for (auto& [kind, finding] : findings_) report_.findings.push_back(std::move(finding));
     return std::move(report_);
   }
@@ -268,6 +272,14 @@ class SceneChecker {
     }
     report_.closed = encloses_all(
         found, [&](std::uint32_t polygon) -> const Surface& { return scene_.surfaces[surface_of_[polygon]]; });
+  }
+
+  void check_boundary_rings() {
+    std::vector<std::uint32_t> object;
+    for (const std::uint32_t surface : surface_of_) object.push_back(scene_.surfaces[surface].object);
+    for (const BoundaryRing& ring : find_boundary_rings(polygons_, object)) {
+      add(FindingKind::boundary_ring, surface_of_[ring.polygon], ring.length);
+    }
   }
 
   static void extend(Box& box, const Polygon& polygon) {

@@ -21,6 +21,7 @@ enum class FindingKind {
   duplicate_face,       ///< a face that is there already, facing the same way; `amount` is their area [m²]
   non_manifold_edge,    ///< an edge of one object used by more than two faces, or twice in the same direction
   open_edge,            ///< an edge that no other cancels and that ends on no surface; `amount` is their length [m]
+  boundary_ring,        ///< a ring of edges that bounds the mesh of an object (boundary_rings.h); `amount` likewise
   contact_edge,         ///< an edge that no other cancels, but that ends on a surface; `amount` likewise
   overlap_same_facing,  ///< two faces in one plane, one lying on the other; `amount` is the area in common [m²]
   overlap_against,      ///< two faces in one plane in contact, front to front or back to back; `amount` likewise

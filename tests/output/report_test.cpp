@@ -78,7 +78,7 @@ TEST(Manifest, NamesVersionsOfEverything) {
   EXPECT_THAT(manifest.version, looks_like_a_version);
   EXPECT_THAT(manifest.commit, testing::AnyOf("unknown", testing::MatchesRegex("[0-9a-f]+(-modified)?")));
   EXPECT_THAT(manifest.compiler, testing::Not(testing::IsEmpty()));
-  for (const char* name : {"CGAL", "Eigen", "Boost", "TBB", "Embree", "HDF5"}) {
+  for (const char* name : {"CGAL", "Eigen", "Boost", "OpenMesh", "TBB", "Embree", "HDF5"}) {
     ASSERT_TRUE(manifest.libraries.contains(name)) << name;
     EXPECT_THAT(manifest.libraries.at(name), looks_like_a_version) << name;
   }
