@@ -98,7 +98,7 @@ TEST(RefinedMeshTest, PatchesAreCutAlongTheEdgesOfUmbraAndPenumbra) {
 TEST(RefinedMeshTest, NeedsAnElement) {
   const Scene scene = half_shadow(0.5);
   const PolygonSoup soup = make_soup(scene);
-  EXPECT_THROW(RefinedMesh(scene, soup, 0, 0), std::invalid_argument);
+  EXPECT_THROW(RefinedMesh(scene, soup, {.elements_per_edge = 0}), std::invalid_argument);
 }
 
 }  // namespace
