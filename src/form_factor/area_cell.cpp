@@ -48,7 +48,7 @@ std::array<Rule, sizeof...(Less)> make_rules(std::integer_sequence<unsigned, Les
 
 const Rule& rule_of(int order) {
   static const auto rules = make_rules(std::make_integer_sequence<unsigned, kHighestOrder - 1>());
-  if (order < 2 || order > kHighestOrder) throw std::invalid_argument("gauss_points: order must be 2 to 12");
+  if (order < 2 || order > kHighestOrder) throw std::invalid_argument("gauss_points: order must be 2 to 16");
   return rules[static_cast<std::size_t>(order - 2)];
 }
 

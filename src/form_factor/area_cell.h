@@ -66,7 +66,7 @@ struct WeightedPoint {
 /// cell's interior. Point i · order + j has place i along the one side of the square and j along the other.
 void gauss_points(const AreaCell& cell, int order, std::vector<WeightedPoint>& points);
 
-inline constexpr int kHighestOrder = 12;
+inline constexpr int kHighestOrder = 16;
 
 struct Truncation {
   double error = 0;  ///< of an analytic integrand

@@ -432,8 +432,12 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
          ++order) {
       left *= old.fall * old.fall;
     }
-    // The rules of lowest order tell little of how the others do.
-    if (order > kHighestOrder && old.order < kSureOrder) order = kSureOrder;
+    if (order > kHighestOrder && old.order < kSureOrder) {
+      order = kSureOrder;  // the rules of lowest order tell little of how the others do
+    } else if (order > kHighestOrder && old.order < kHighestOrder &&
+               old.error * std::pow(old.fall, kHighestOrder) <= wanted) {
+      order = kHighestOrder;  // the figure of one rule may be by chance much larger than that of the next
+    }
     std::vector<Cell> parts;
     if (old.uncut.empty() && !old.mixed && order <= kHighestOrder) {
       parts.push_back(std::move(cells_[worst]));
