@@ -244,7 +244,8 @@ Truncation truncation_of(std::span<const double> weighted, int order) {
   double fall = rate(size, last, n - 1);
   if (n > 4) fall = std::max(fall, rate(std::max(at(n - 4), at(n - 3)), last, 2));
   const double trust = std::clamp((0.6 - fall) / 0.3, 0.0, 1.0);
-  return {30 * last * std::pow(fall, 1 + trust * static_cast<double>(n)), last, fall};
+  const auto behind = [&](double orders) { return 30 * last * std::pow(fall, 1 + orders); };
+  return {behind(trust * static_cast<double>(n)), behind(static_cast<double>(n)), last, fall};
 }
 
 }  // namespace exitance
