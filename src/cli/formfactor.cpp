@@ -212,8 +212,7 @@ class FormFactor {
       rows = run_pairs(patches.exchange,
                        {.pairs = pairs_,
                         .block_seconds = save_every_,
-                        .progress = [&](double fraction, std::string_view label) { display.show(fraction, label); },
-                        .stop = interrupted},
+                        .progress = [&](double fraction, std::string_view label) { display.show(fraction, label); }},
                        checkpoint_ ? &*checkpoint_ : nullptr);
     }
     if (!rows.complete) stop(rows.finished);
@@ -238,7 +237,7 @@ class FormFactor {
   MatrixRecord checked(const Patches& patches, const PairRun& rows) {
     PairOptions sampled = pairs_;
     sampled.points = kSamplePoints;
-    report_.sample = sample_pairs(patches.exchange, rows.rows, sampled, kSampledPairs, seed_, interrupted);
+    report_.sample = sample_pairs(patches.exchange, rows.rows, sampled, kSampledPairs, seed_);
     if (!report_.sample.complete) stop(rows.finished);
     const std::string hash =
         report_.scene_hash + (patch_size_ > 0 ? fmt::format(" in patches of {} m", patch_size_) : "");
@@ -289,7 +288,7 @@ class FormFactor {
 
   CLI::App& verb_;
   SceneOptions scene_;
-  PairOptions pairs_{.tolerance = 1e-9};
+  PairOptions pairs_{.tolerance = 1e-9, .stop = interrupted};
   double patch_size_ = 0, save_every_ = 2;
   std::optional<std::size_t> threads_;
   std::optional<double> memory_limit_;

@@ -48,7 +48,7 @@ std::array<Rule, sizeof...(Less)> make_rules(std::integer_sequence<unsigned, Les
 
 const Rule& rule_of(int order) {
   static const auto rules = make_rules(std::make_integer_sequence<unsigned, kHighestOrder - 1>());
-  if (order < 2 || order > kHighestOrder) throw std::invalid_argument("gauss_points: order must be 2 to 12");
+  if (order < 2 || order > kHighestOrder) throw std::invalid_argument("gauss_points: order must be 2 to 16");
   return rules[static_cast<std::size_t>(order - 2)];
 }
 
@@ -244,7 +244,8 @@ Truncation truncation_of(std::span<const double> weighted, int order) {
   double fall = rate(size, last, n - 1);
   if (n > 4) fall = std::max(fall, rate(std::max(at(n - 4), at(n - 3)), last, 2));
   const double trust = std::clamp((0.6 - fall) / 0.3, 0.0, 1.0);
-  return {30 * last * std::pow(fall, 1 + trust * static_cast<double>(n)), last, fall};
+  const auto behind = [&](double orders) { return 30 * last * std::pow(fall, 1 + orders); };
+  return {behind(trust * static_cast<double>(n)), behind(static_cast<double>(n)), last, fall};
 }
 
 }  // namespace exitance

@@ -66,10 +66,11 @@ struct WeightedPoint {
 /// cell's interior. Point i · order + j has place i along the one side of the square and j along the other.
 void gauss_points(const AreaCell& cell, int order, std::vector<WeightedPoint>& points);
 
-inline constexpr int kHighestOrder = 12;
+inline constexpr int kHighestOrder = 16;
 
 struct Truncation {
   double error = 0;  ///< of an analytic integrand
+  double least = 0;  ///< what it is if the coefficients go on falling as they did
   double last = 0;   ///< size of the coefficients of highest order
   double fall = 0;   ///< at most 1: from one order to the next
 };

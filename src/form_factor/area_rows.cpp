@@ -53,7 +53,9 @@ AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOpt
   for (std::uint32_t first = 0; first < n; first += kBlock) {
     rows.resize(std::min(kBlock, n - first));
     std::iota(rows.begin(), rows.end(), first);
-    append(all, pair_rows(scene, rows, options, result.statistics));
+    const PairRows finished = pair_rows(scene, rows, options, result.statistics);
+    if (finished.row.size() < rows.size()) return {};
+    append(all, finished);
     const double left = 1 - static_cast<double>(first + rows.size()) / n;
     if (progress) progress(1 - left * left, "form factors");
   }

@@ -26,7 +26,7 @@ struct AreaRows {
 
 /// Every pair of elements is integrated once; what an element sees of a patch is the sum of the patch's elements. In
 /// parallel; any number of threads gives the same bits. The mesh must be of the soup's scene. seed: of the
-/// pairs whose reciprocity is measured.
+/// pairs whose reciprocity is measured. Where options.stop ends the work, F is empty.
 AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOptions& options, std::uint64_t seed,
                    const Progress& progress = {});
 

@@ -154,7 +154,8 @@ void ObstructedExchange::sight_corners(Viewpoint& view, const AreaCell& shape, s
 }
 
 void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double tolerance) {
-  const double before = cell.order > 0 ? cell.integral : INFINITY;
+  const bool first = cell.order == 0;
+  const double before = first ? INFINITY : cell.integral;
   cell.order = order;
   gauss_points(cell.shape, cell.order, scratch_);
   const double area = cell.shape.area();
@@ -182,9 +183,13 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
   // Rounding: of each weight and product, and of the sum.
   cell.point_error += (16 + static_cast<double>(scratch_.size())) * kRoundoff * cell.integral;
   const Truncation truncation = truncation_of(weighted_, cell.order);
-  // The rule before erred by what the two differ; this one errs less.
-  cell.error = std::min(truncation.error, kDifference * std::fabs(cell.integral - before));
+  // The rule before erred by what the two differ; this one errs less, unless they agree by chance.
+  cell.error = std::min(truncation.error, std::max(truncation.least, kDifference * std::fabs(cell.integral - before)));
   cell.fall = truncation.fall;
+  if (first && cell.slowest > cell.fall) {
+    cell.error *= std::pow(cell.slowest / cell.fall, 1 + order);
+    cell.fall = cell.slowest;
+  }
   if (order == kScoutOrder) {
     sightings_.clear();
     sight_corners(view, cell.shape, sightings_);
@@ -380,6 +385,9 @@ std::vector<ObstructedExchange::Cell> ObstructedExchange::parts_of(Viewpoint* vi
   for (const AreaCell& shape : arranged) {
     Cell part;
     part.shape = shape;
+    // A half's poles lie twice as far away as those of the whole, so that its coefficients fall by the square at best.
+    // What made those of the whole fall slowly may hide between the few points of the half's first rule.
+    if (along == kNone && !cell.mixed) part.slowest = cell.fall * cell.fall;
     for (const std::uint32_t e : cell.uncut) {
       if (e != along && events_[e].concerns(shape.loop())) part.uncut.push_back(e);
     }
@@ -401,7 +409,8 @@ void ObstructedExchange::cut_all() {
   }
 }
 
-void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t points) {
+void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t points,
+                                const std::function<bool()>& stop) {
   const auto better = [&](std::uint32_t a, std::uint32_t b) {
     return cells_[a].error != cells_[b].error ? cells_[a].error < cells_[b].error : a < b;
   };
@@ -413,12 +422,13 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
     started_ = true;
     cut_all();
     for (std::uint32_t c = 0; c < cells_.size(); ++c) {
+      if (stop && stop()) return;
       measure(view, cells_[c], kScoutOrder, tolerance);
       running_error_ += cells_[c].error + cells_[c].point_error;
       push(c);
     }
   }
-  while (running_error_ > tolerance && points_ < points && !heap_.empty()) {
+  while (running_error_ > tolerance && points_ < points && !heap_.empty() && !(stop && stop())) {
     std::pop_heap(heap_.begin(), heap_.end(), better);
     const std::uint32_t worst = heap_.back();
     heap_.pop_back();
@@ -432,8 +442,12 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
          ++order) {
       left *= old.fall * old.fall;
     }
-    // The rules of lowest order tell little of how the others do.
-    if (order > kHighestOrder && old.order < kSureOrder) order = kSureOrder;
+    if (order > kHighestOrder && old.order < kSureOrder) {
+      order = kSureOrder;  // the rules of lowest order tell little of how the others do
+    } else if (order > kHighestOrder && old.order < kHighestOrder &&
+               old.error * std::pow(old.fall, kHighestOrder) <= wanted) {
+      order = kHighestOrder;  // the figure of one rule may be by chance much larger than that of the next
+    }
     std::vector<Cell> parts;
     if (old.uncut.empty() && !old.mixed && order <= kHighestOrder) {
       parts.push_back(std::move(cells_[worst]));

@@ -2,6 +2,7 @@
 // What two polygons exchange past others, by integrating over one of them what its points see of the other.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -28,8 +29,8 @@ class ObstructedExchange {
                      std::span<const std::uint32_t> items, double most);
 
   /// Refines until error() ≤ tolerance [m²] or `points` points have been looked from in all; one that needs extended
-  /// precision counts for several.
-  void refine(Viewpoint& view, double tolerance, std::uint64_t points);
+  /// precision counts for several; or until `stop`, asked before each cell, says so.
+  void refine(Viewpoint& view, double tolerance, std::uint64_t points, const std::function<bool()>& stop = {});
 
   double integral() const;  ///< [m²]
   double error() const;     ///< [m²] estimate of |integral − true| that is meant to hold
@@ -41,6 +42,7 @@ class ObstructedExchange {
     AreaCell shape;
     int order = 0;  ///< of the rule that measured it; 0: none did
     double fall = 1;
+    double slowest = 0;                ///< fall that its first rule is believed to have at least
     std::vector<std::uint32_t> uncut;  ///< events that concern it
     bool mixed = false;                ///< its points see different outlines
     double integral = 0, error = 0, point_error = 0;

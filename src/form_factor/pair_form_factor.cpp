@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <boost/math/constants/constants.hpp>
 #include <cmath>
+#include <optional>
 
 #include "geometry/contour_form_factor.h"
 #include "src/form_factor/obstructed_exchange.h"
 
 namespace exitance {
 namespace {
+
+/// A pair that could exchange no more than this share of what is needed without anything between is not integrated.
+constexpr double kNegligible = 1e-2;
 
 /// Bound of the form factor from any point of one radiator to the other: a disc's worth of area at the distance of the
 /// spheres around them, and never more than 1.
@@ -18,20 +22,53 @@ double most(const RadiatorFacet& from, const RadiatorFacet& to) {
   return std::min(1.0, 1.01 * to.area / (boost::math::constants::pi<double>() * distance * distance));
 }
 
-/// Whether two facets lie in one plane but for the rounding of their coordinates, as a box on a floor does when both
-/// are turned. Between them is no gap that could be told from none.
-bool lie_in_one_plane(const RadiatorFacet& a, const RadiatorFacet& b) {
+/// The farthest that a facet's corners lie off another one's plane; infinite if that is more than the rounding of
+/// coordinates explains.
+double rounding_between(const RadiatorFacet& facet, const RadiatorFacet& plane, double size) {
   constexpr double kRounding = 0x1p-48;
+  double farthest = 0, extent = 0;
+  for (const Vec3& v : facet.loop) {
+    const Vec3 w = v - plane.loop[0];
+    farthest = std::max(farthest, std::fabs(dot(plane.normal, w)));
+    extent = std::max(extent, norm(w));
+  }
+  // The normal's relative error is 2^-49, the products' less.
+  return farthest <= kRounding * size ? farthest + 0x1p-48 * extent : INFINITY;
+}
+
+/// What a convex facet at no more than `height` above or below the plane of another may exchange at most with what of
+/// that one lies not straight below or above it, no more than `reach` away [m²]. From distance t, measured in the
+/// plane, it is seen at an elevation whose sine is at most height / t, and its form factor is at most the square of
+/// that, and 1; less than perimeter · t + π t² lies within t of it. Integrated: 2 P h + π h² (1 + 2 ln(reach / h)).
+double exchange_beside(const RadiatorFacet& facet, double height, double reach) {
+  double perimeter = 0;
+  for (std::size_t k = 0; k < facet.loop.size(); ++k) {
+    perimeter += norm(facet.loop[(k + 1) % facet.loop.size()] - facet.loop[k]);
+  }
+  const double round = boost::math::constants::pi<double>() * (1 + 2 * std::log(std::max(1.0, reach / height)));
+  return 1.01 * height * (2 * perimeter + round * height);
+}
+
+/// Whether two facets lie in one plane but for the rounding of their coordinates, as a box on a floor does when both
+/// are turned; then, what they may exchange beyond nothing [m²]:
+///  - Facing the same way. For a direction r from one to the other, both cosines are positive only if n · r is below
+///    |n − m|, the difference of the unit normals: what is seen is a band above the horizon, and the form factor from
+///    any point at most the square of that.
+///  - Facing each other: where one lies over the other they are in contact, which is nothing by definition; else
+///    exchange_beside().
+std::optional<double> exchange_in_one_plane(const RadiatorFacet& a, const RadiatorFacet& b) {
   double size = 0;
   for (const auto* loop : {&a.loop, &b.loop}) {
     for (const Vec3& v : *loop) size = std::max({size, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   }
-  const auto lies_in = [&](const RadiatorFacet& one, const RadiatorFacet& other) {
-    const double most = kRounding * size * norm(other.normal);
-    return std::ranges::all_of(one.loop,
-                               [&](const Vec3& v) { return std::fabs(dot(other.normal, v - other.loop[0])) <= most; });
-  };
-  return lies_in(a, b) && lies_in(b, a);
+  const double of_a = rounding_between(a, b, size), of_b = rounding_between(b, a, size);
+  if (!(std::max(of_a, of_b) < INFINITY)) return {};
+  if (dot(a.normal, b.normal) > 0) {
+    const double turn = norm(a.normal - b.normal) + 0x1p-47;
+    return 1.01 * turn * turn * std::min(a.area, b.area);
+  }
+  const double reach = norm(b.centre - a.centre) + a.radius + b.radius;
+  return std::min(exchange_beside(a, of_a, reach), exchange_beside(b, of_b, reach));
 }
 
 }  // namespace
@@ -78,35 +115,40 @@ PairIntegrator::PairIntegrator(const ExchangeScene& scene) : scene_(scene), shaf
 PairIntegrator::Exchanged PairIntegrator::exchange(const ExchangeScene::Piece& a, const ExchangeScene::Piece& b,
                                                    double tolerance, double needed, const PairOptions& options,
                                                    std::uint64_t& points) {
-  if (lie_in_one_plane(a.radiator.facets()[0], b.radiator.facets()[0])) return {};
   shaft_.reset({a.source.facet, a.source.loop}, {b.source.facet, b.source.loop});
   if (!shaft_.face_each_other()) return {};
-  const Shaft::Overlap overlap = shaft_.find_occluders(items_);
-  if (overlap == Shaft::Overlap::outside) {
-    ExchangeTolerance asked;
-    asked.absolute = std::min(asked.absolute, tolerance);
-    const Exchange open = unobstructed_exchange(a.radiator, b.radiator, asked);
-    return {open.integral, open.error, PairClass::open};
+  if (const auto bound = exchange_in_one_plane(a.radiator.facets()[0], b.radiator.facets()[0])) {
+    return {0, *bound, PairClass::blocked};
   }
+  const Shaft::Overlap overlap = shaft_.find_occluders(items_);
   if (overlap == Shaft::Overlap::blocking) return {0, 0, PairClass::blocked};
+  ExchangeTolerance asked;
+  asked.absolute = std::min(asked.absolute, tolerance);
+  const Exchange open = unobstructed_exchange(a.radiator, b.radiator, asked);
+  if (overlap == Shaft::Overlap::outside) return {open.integral, open.error, PairClass::open};
+  // What stands between takes away: the exchange lies between 0 and the unobstructed one, however badly it is known.
+  const double unobstructed = open.integral + open.error, half = 0.5 * unobstructed;
+  if (half <= kNegligible * needed) return {half, half, PairClass::partial};
   const RadiatorFacet &of_a = a.radiator.facets()[0], &of_b = b.radiator.facets()[0];
   ObstructedExchange there(scene_.soup(), a.source, b.source, items_, most(of_a, of_b));
   ObstructedExchange back(scene_.soup(), b.source, a.source, items_, most(of_b, of_a));
   ObstructedExchange *one = &there, *other = &back;
   if (back.events() < there.events()) std::swap(one, other);
-  one->refine(view_, needed, options.points);
+  one->refine(view_, needed, options.points, options.stop);
   Exchanged result{one->integral(), one->error(), PairClass::partial};
   points += one->points();
   // What the two sides say of each other is the best judge of their errors; a side that has much trouble, as beside a
   // contact, leaves it to the other.
   if (options.both_ways || one->error() > needed) {
-    other->refine(view_, needed, options.points);
+    other->refine(view_, needed, options.points, options.stop);
     points += other->points();
     if (other->error() < one->error()) std::swap(one, other);
     const double apart = std::fabs(there.integral() - back.integral());
     result = {one->integral(), one->error(), PairClass::partial};
     if (apart > there.error() + back.error()) result.error = apart;
   }
+  result.integral = std::clamp(result.integral, 0.0, unobstructed);
+  result.error = std::min(result.error, std::max(result.integral, unobstructed - result.integral));
   return result;
 }
 
@@ -136,7 +178,7 @@ PairFormFactor PairIntegrator::form_factor(std::size_t i, std::size_t j, const P
       }
     }
     const double enough = std::max(options.tolerance * smaller, options.relative * integral);
-    if (error <= enough || tolerance <= options.tolerance) break;
+    if (error <= enough || tolerance <= options.tolerance || (options.stop && options.stop())) break;
     tolerance = std::max(options.tolerance, std::min(0.1 * tolerance, 0.5 * options.relative * integral / smaller));
   }
   result.kind = partial || (open && blocked) ? PairClass::partial

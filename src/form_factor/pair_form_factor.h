@@ -2,6 +2,7 @@
 // Form factors between patches: F_ij is the mean over i of the form factor from its points to what they see of j.
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,9 @@ struct PairOptions {
   double relative = 0;             ///< an error within this share of its form factor is good enough, too
   std::uint64_t points = 100'000;  ///< that an integral may take; one that needs more has not reached its tolerance
   bool both_ways = false;  ///< integrate over both patches, independently; errors then cover what the other one says
+  /// Asked before each cell of an integral, from any thread: true, once and from then on, ends the work, and what it
+  /// gave then is not to be used. May be empty.
+  std::function<bool()> stop = {};
 };
 
 /// What two patches exchange. A_i F_ij = A_j F_ji by construction: both come from one integral.
@@ -67,10 +71,13 @@ class PairIntegrator {
   explicit PairIntegrator(const ExchangeScene& scene);
 
   /// F from patch i to patch j and back; i = j: what a bent patch sees of itself.
-  ///  - Facing away, decided exactly: 0 ± 0. In one plane, though rounding may have left a gap: likewise.
+  ///  - Facing away, decided exactly: 0 ± 0.
+  ///  - In one plane, but that rounding has left a gap: 0, blocked, with a proven bound of what the gap lets through as
+  ///    error. Where they face each other and one lies over the other, that is nothing: they are in contact.
   ///  - Open, decided exactly (nothing reaches into the shaft of both): the contour integral, without a point of view.
   ///  - Blocked, decided exactly for one convex occluder: 0 ± 0; behind several together it counts as partial.
-  ///  - Partial: by ObstructedExchange, over the patch on which fewer visual events lie.
+  ///  - Partial: by ObstructedExchange, over the patch on which fewer visual events lie; between 0 and the unobstructed
+  ///    exchange, and half of that without integration where it is negligible.
   /// An exchange that cannot be told from 0 at all within tolerance keeps its error.
   PairFormFactor form_factor(std::size_t i, std::size_t j, const PairOptions& options);
 

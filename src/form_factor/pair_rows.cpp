@@ -20,6 +20,7 @@ struct Stretch {
   std::vector<std::uint32_t> column = {};
   std::vector<PairFormFactor> pair = {};
   PairStatistics statistics = {};
+  bool finished = false;
 };
 
 std::vector<Stretch> stretches_of(std::span<const std::uint32_t> rows, std::uint32_t patches) {
@@ -73,15 +74,18 @@ PairStatistics& PairStatistics::operator+=(const PairStatistics& other) {
 PairRows pair_rows(const ExchangeScene& scene, std::span<const std::uint32_t> rows, const PairOptions& options,
                    PairStatistics& statistics) {
   using Clock = std::chrono::steady_clock;
+  const auto is_over = [&] { return options.stop && options.stop(); };
   std::vector<Stretch> stretches = stretches_of(rows, static_cast<std::uint32_t>(scene.size()));
   tbb::enumerable_thread_specific<PairIntegrator> integrators([&] { return PairIntegrator(scene); });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, stretches.size(), 1), [&](const auto& some) {
     PairIntegrator& integrator = integrators.local();
     for (std::size_t s = some.begin(); s < some.end(); ++s) {
       Stretch& stretch = stretches[s];
+      if (is_over()) return;
       auto before = Clock::now();
       for (std::uint32_t j = stretch.first; j < stretch.last; ++j) {
         const PairFormFactor pair = integrator.form_factor(rows[stretch.row], j, options);
+        if (is_over()) return;
         const auto now = Clock::now();
         const auto kind = static_cast<std::size_t>(pair.kind);
         ++stretch.statistics.pairs[kind];
@@ -93,13 +97,19 @@ PairRows pair_rows(const ExchangeScene& scene, std::span<const std::uint32_t> ro
         stretch.column.push_back(j);
         stretch.pair.push_back(pair);
       }
+      stretch.finished = true;
     }
   });
   PairRows result;
   auto stretch = stretches.begin();
   for (std::size_t r = 0; r < rows.size(); ++r) {
+    const auto end = std::find_if(stretch, stretches.end(), [&](const Stretch& s) { return s.row != r; });
+    if (!std::all_of(stretch, end, [](const Stretch& s) { return s.finished; })) {
+      stretch = end;
+      continue;
+    }
     result.row.push_back(rows[r]);
-    for (; stretch != stretches.end() && stretch->row == r; ++stretch) {
+    for (; stretch != end; ++stretch) {
       for (std::size_t k = 0; k < stretch->pair.size(); ++k) {
         const PairFormFactor& pair = stretch->pair[k];
         result.column.push_back(stretch->column[k]);

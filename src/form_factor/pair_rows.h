@@ -37,7 +37,8 @@ struct PairStatistics {
 };
 
 /// Rows of some patches: in each the pairs (i, j), j ≥ i, ascending, but for those that face away. In parallel; any
-/// number of threads gives the same bits. Adds to the statistics.
+/// number of threads gives the same bits. Adds to the statistics. Where options.stop ends the work, only the rows that
+/// were finished are there.
 PairRows pair_rows(const ExchangeScene& scene, std::span<const std::uint32_t> rows, const PairOptions& options,
                    PairStatistics& statistics);
 

@@ -109,7 +109,7 @@ Recomputed recompute(const ExchangeScene& scene, Viewpoint& view, const SampledP
       const auto over = [&](const ExchangeScene::Piece& receiver, const ExchangeScene::Piece& source) {
         ObstructedExchange exchange(scene.soup(), receiver.source, source.source, items,
                                     most(receiver.radiator, source.radiator));
-        exchange.refine(view, needed, options.points);
+        exchange.refine(view, needed, options.points, options.stop);
         return Exchange{exchange.integral(), exchange.error()};
       };
       add(result.over_i, over(p, q));
@@ -126,16 +126,17 @@ bool by_share(const PairDefect& a, const PairDefect& b) {
 }  // namespace
 
 PairSample sample_pairs(const ExchangeScene& scene, std::span<const PairRows> rows, const PairOptions& options,
-                        std::size_t count, std::uint64_t seed, const std::function<bool()>& stop) {
+                        std::size_t count, std::uint64_t seed) {
   const std::vector<SampledPair> pairs = draw(scene, rows, count, seed);
   PairSample sample;
   sample.reciprocity.resize(pairs.size());
   sample.beyond_unobstructed.resize(pairs.size());
+  const auto is_over = [&] { return options.stop && options.stop(); };
   tbb::enumerable_thread_specific<Viewpoint> views([&] { return Viewpoint(scene.soup()); });
   std::atomic<bool> stopped = false;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pairs.size(), 1), [&](const auto& some) {
     for (std::size_t k = some.begin(); k < some.end() && !stopped; ++k) {
-      if (stop && stop()) stopped = true;
+      if (is_over()) stopped = true;
       const SampledPair& pair = pairs[k];
       const double smaller = std::min(scene.area(pair.i), scene.area(pair.j));
       const Recomputed again = recompute(scene, views.local(), pair, options);
@@ -148,7 +149,7 @@ PairSample sample_pairs(const ExchangeScene& scene, std::span<const PairRows> ro
                                        (pair.found.error + again.unobstructed.error) / smaller};
     }
   });
-  if (stopped) return {.reciprocity = {}, .beyond_unobstructed = {}, .complete = false};
+  if (stopped || is_over()) return {.reciprocity = {}, .beyond_unobstructed = {}, .complete = false};
   return sample;
 }
 

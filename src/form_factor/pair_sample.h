@@ -27,14 +27,13 @@ struct PairSample {
   std::vector<PairDefect> reciprocity;
   /// By how much the pair exchanges more than it would with nothing in between; below 0 where it is less.
   std::vector<PairDefect> beyond_unobstructed;
-  bool complete = true;  ///< false: `stop` ended the work, and both are empty
+  bool complete = true;  ///< false: options.stop ended the work, and both are empty
 };
 
 /// Integrates up to `count` pairs of different patches again, chosen at random among those of the rows that are
 /// partial. In parallel; the same for any number of threads and any division of the rows into parts. `points` limits
-/// what each integral may take; one that is stopped by it has a larger error, which is allowed for. stop: asked often,
-/// from any thread; may be empty.
+/// what each integral may take; one that is stopped by it has a larger error, which is allowed for.
 PairSample sample_pairs(const ExchangeScene& scene, std::span<const PairRows> rows, const PairOptions& options,
-                        std::size_t count, std::uint64_t seed, const std::function<bool()>& stop = {});
+                        std::size_t count, std::uint64_t seed);
 
 }  // namespace exitance

@@ -60,23 +60,29 @@ PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Che
     pairs_left += n - row;
   }
 
+  const auto is_over = [&] { return options.pairs.stop && options.pairs.stop(); };
   Stride stride(options.block_seconds);
   for (std::size_t next = 0; next < left.size();) {
-    if (options.stop && options.stop()) return run;
+    if (is_over()) return run;
     PairRows block;
+    bool whole = true;
     const auto begun = Clock::now();
     do {
       const auto before = Clock::now();
       const auto rows = std::span(left).subspan(next, std::min(stride.rows(), left.size() - next));
-      append(block, pair_rows(scene, rows, options.pairs, run.statistics));
+      const PairRows finished = pair_rows(scene, rows, options.pairs, run.statistics);
+      append(block, finished);
+      whole = finished.row.size() == rows.size();
       next += rows.size();
       stride.learn(seconds_since(before));
-      for (const std::uint32_t row : rows) pairs_done += n - row;
-    } while (next < left.size() && seconds_since(begun) < options.block_seconds && !(options.stop && options.stop()));
+      for (const std::uint32_t row : finished.row) pairs_done += n - row;
+    } while (whole && next < left.size() && seconds_since(begun) < options.block_seconds && !is_over());
+    if (block.row.empty()) return run;
     if (checkpoint != nullptr) checkpoint->add(block);
     run.finished += static_cast<std::uint32_t>(block.row.size());
     run.rows.push_back(std::move(block));
     if (options.progress) options.progress(pairs_done / pairs_left, "form factors");
+    if (!whole) return run;
   }
   run.complete = true;
   return run;

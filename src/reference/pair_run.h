@@ -2,7 +2,6 @@
 // A long run: all rows of pairs of a scene, block after block, each saved before the next.
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -17,7 +16,7 @@ struct PairRun {
   PairStatistics statistics;   ///< of the rows that were computed now
   std::uint32_t finished = 0;  ///< rows
   std::uint32_t resumed = 0;   ///< of them, those that the checkpoint held
-  bool complete = false;       ///< whether all rows asked for are finished; if not, `stop` ended the run
+  bool complete = false;       ///< whether all rows asked for are finished; if not, pairs.stop ended the run
 };
 
 struct PairRunOptions {
@@ -25,8 +24,6 @@ struct PairRunOptions {
   std::optional<std::uint32_t> rows = {};  ///< only the first so many; all unless given
   double block_seconds = 2;                ///< about how much work is put into a block
   Progress progress = {};                  ///< by pairs, of those that were left to do
-  /// Asked after each block, from the thread that called: true ends the run. May be empty.
-  std::function<bool()> stop = {};
 };
 
 /// The rows that the checkpoint does not hold, ascending, in blocks of at least a row. The same bits for any

@@ -105,6 +105,7 @@ class ReferenceSolver {
         soup_(soup) {
     if (refined_.mesh().patches.empty())
       throw InputError(scene.name, 0, "no surface has an area; there is nothing to solve");
+    pairs_.stop = options_.stop;
     new_elements_ = static_cast<std::uint32_t>(refined_.mesh().elements.size());
     SolutionRecord& record = result_.record;
     record.source = scene.name;
@@ -141,8 +142,7 @@ class ReferenceSolver {
                             {.pairs = pairs_,
                              .rows = new_elements_,
                              .block_seconds = options_.block_seconds,
-                             .progress = [&](double fraction, std::string_view) { report(fraction); },
-                             .stop = options_.stop},
+                             .progress = [&](double fraction, std::string_view) { report(fraction); }},
                             checkpoints_.empty() ? nullptr : &checkpoints_.back());
     if (!run.complete) {
       return ended(ReferenceEnd::stopped,

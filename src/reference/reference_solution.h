@@ -23,9 +23,10 @@ struct ReferenceOptions {
   /// Folder in which each level's rows of form factors are kept as they are finished, and found when the same work is
   /// begun again; empty: none. It is made, and removed when the error is reached and the solution was given to `saved`.
   std::filesystem::path checkpoint = {};
-  std::string key = {};        ///< what else the rows depend on: version, compiler
-  double block_seconds = 2;    ///< about how much work is put into a block of rows, after which it is saved
-  std::function<bool()> stop;  ///< asked often, from the thread that called: true ends the work; may be empty
+  std::string key = {};      ///< what else the rows depend on: version, compiler
+  double block_seconds = 2;  ///< about how much work is put into a block of rows, after which it is saved
+  std::function<bool()>
+      stop;  ///< asked often, from any thread: true, once and from then on, ends the work; may be empty
   Progress progress;
 };
 

@@ -118,6 +118,7 @@ class SceneSolver {
   FormFactorMatrix area_rows_of_elements(const Progress& report) {
     PairOptions how;
     how.tolerance = options_.form_factor_tolerance;
+    how.stop = options_.stop;
     AreaRows rows = area_rows(result_.mesh, result_.soup, how, options_.seed, report);
     result_.statistics.pairs = {rows.statistics.pairs[static_cast<std::size_t>(PairClass::facing_away)],
                                 rows.statistics.pairs[static_cast<std::size_t>(PairClass::open)],
@@ -131,14 +132,15 @@ class SceneSolver {
   }
 
   FormFactorMatrix rows() {
+    const auto refuse = [] { throw LimitError("stopped before the form factors were complete; nothing was saved"); };
     const auto report = [&](double fraction, std::string_view label) {
       if (options_.progress) options_.progress(fraction, label);
-      if (fraction < 1 && stopped())
-        throw LimitError("stopped before the form factors were complete; nothing was saved");
+      if (fraction < 1 && stopped()) refuse();
     };
     FormFactorMatrix F;
     if (options_.receivers == Receivers::area) {
       F = area_rows_of_elements(report);
+      if (F.rows() == 0) refuse();
     } else {
       PointRows rows = point_rows(result_.mesh, result_.soup, 0, result_.mesh.elements.size(), report);
       result_.statistics = rows.statistics;

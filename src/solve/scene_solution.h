@@ -39,7 +39,7 @@ struct SolveOptions {
   /// and no limit of its work was asked for, and computes each column when it is shot otherwise.
   std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();
   std::optional<std::uint64_t> max_shots;
-  /// Asked often, from the thread that called: true ends the work. May be empty.
+  /// Asked often, from any thread: true, once and from then on, ends the work. May be empty.
   std::function<bool()> stop;
   bool stop_is_a_limit =
       false;               ///< whether `stop` is meant to end the work in time, so that shooting should begin at once

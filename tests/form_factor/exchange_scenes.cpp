@@ -115,6 +115,16 @@ std::vector<Vec3> random_sheet(Random& random, const Vec3& at, double size, cons
 
 }  // namespace
 
+PolygonSoup soup_of(const KnownPair& pair) {
+  std::vector<Polygon> polygons{{pair.receiver, {}}, {pair.source, {}}};
+  std::vector<Role> roles(2, Role::patch);
+  for (const ConvexBody& body : pair.occluders) {
+    for (const auto& face : body) polygons.push_back({face, {}});
+    roles.resize(polygons.size(), body.size() > 1 ? Role::solid_face : Role::sheet);
+  }
+  return PolygonSoup(polygons, roles);
+}
+
 KnownPair random_pair(int number) {
   Random random("exchange truth " + std::to_string(number));
   KnownPair pair;

@@ -25,8 +25,11 @@ KnownScene known_scene(std::string_view name);
 
 struct KnownPair {
   std::vector<Vec3> receiver, source;
-  std::vector<ConvexBody> occluders;  ///< sheets
+  std::vector<ConvexBody> occluders;
 };
+
+/// Receiver and source as patches 0 and 1; bodies of several faces are closed.
+PolygonSoup soup_of(const KnownPair& pair);
 
 /// The number-th of a sequence: triangles and parallelograms, slivers among them, past one to six such sheets, some of
 /// which pierce the plates' planes, each other or the plates. Coordinates are exact. Many are open or face away.

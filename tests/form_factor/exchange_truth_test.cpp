@@ -54,13 +54,7 @@ KnownPair turned(KnownPair pair) {
 }
 
 PairFormFactor product_of(const KnownPair& pair, double tolerance, double relative = 0) {
-  std::vector<Polygon> polygons{{pair.receiver, {}}, {pair.source, {}}};
-  std::vector<Role> roles(2, Role::patch);
-  for (const ConvexBody& body : pair.occluders) {
-    for (const Loop& face : body) polygons.push_back({face, {}});
-    roles.resize(polygons.size(), body.size() > 1 ? Role::solid_face : Role::sheet);
-  }
-  const PolygonSoup soup(polygons, roles);
+  const PolygonSoup soup = soup_of(pair);
   const ExchangeScene scene(soup);
   PairOptions options;
   options.tolerance = tolerance;

@@ -71,7 +71,9 @@ TEST_F(PairSampleTest, IsTheSameHoweverTheRowsAreDivided) {
 
 TEST_F(PairSampleTest, EndsWhenAsked) {
   const std::vector<PairRows> all{rows(0, patches())};
-  const PairSample stopped = sample_pairs(scene_, all, options_, 16, 1, [] { return true; });
+  PairOptions options = options_;
+  options.stop = [] { return true; };
+  const PairSample stopped = sample_pairs(scene_, all, options, 16, 1);
   EXPECT_FALSE(stopped.complete);
   EXPECT_TRUE(stopped.reciprocity.empty());
 }

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <memory>
 
 #include "src/scene/reader.h"
 #include "tests/output/scratch_folder.h"
@@ -13,8 +15,10 @@ namespace {
 class PairRunTest : public testing::Test {
  protected:
   static PairRunOptions stopped_after(int blocks) {
-    return {
-        .pairs = {.tolerance = 1e-6}, .block_seconds = 0, .stop = [left = blocks]() mutable { return left-- <= 0; }};
+    const auto left = std::make_shared<std::atomic<int>>(blocks);
+    return {.pairs = {.tolerance = 1e-6, .stop = [left] { return *left <= 0; }},
+            .block_seconds = 0,
+            .progress = [left](double, std::string_view) { --*left; }};
   }
   static PairRunOptions whole() { return {.pairs = {.tolerance = 1e-6}}; }
 
@@ -54,6 +58,27 @@ TEST_F(PairRunTest, GoesOnWhereItWasStoppedWithTheSameBits) {
   EXPECT_EQ(resumed.resumed, finished);
   EXPECT_EQ(resumed.finished, scene_.size());
   expect_same(resumed, whole_run);
+}
+
+/// However long a row takes, or a pair: what ends is its integral.
+TEST_F(PairRunTest, EndsWithinARow) {
+  for (const int asked : {1, 100, 1000}) {
+    PairRunOptions options = whole();
+    const auto left = std::make_shared<std::atomic<int>>(asked);
+    options.pairs.stop = [left] { return --*left <= 0; };
+    const PairRun run = run_pairs(scene_, options, nullptr);
+    EXPECT_FALSE(run.complete);
+    EXPECT_LT(run.finished, scene_.size());
+    // No more is asked than what is there to end: once a pair, an integral, a row and a run.
+    EXPECT_GT(*left, -200);
+    for (const PairRows& part : run.rows) {
+      EXPECT_EQ(part.row_first.size(), part.row.size() + 1);
+      PairStatistics statistics;
+      const PairRows again = pair_rows(scene_, part.row, whole().pairs, statistics);
+      EXPECT_EQ(part.column, again.column);
+      EXPECT_EQ(part.F, again.F);
+    }
+  }
 }
 
 TEST_F(PairRunTest, ComputesRowsAgainWhosePartIsGone) {

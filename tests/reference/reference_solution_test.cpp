@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include "src/form_factor/area_cell.h"
@@ -109,7 +111,9 @@ TEST(ReferenceSolutionTest, GoesOnFromItsCheckpointWithTheSameBits) {
   int starts = 0;
   for (bool done = false; !done; ++starts) {
     ASSERT_LT(starts, 1000);
-    options.stop = [left = 20]() mutable { return left-- <= 0; };
+    const auto left = std::make_shared<std::atomic<int>>(20);
+    options.stop = [left] { return *left <= 0; };
+    options.progress = [left](double, std::string_view) { --*left; };
     try {
       resumed = solve_reference(scene, soup, options);
       done = resumed.end == ReferenceEnd::reached;

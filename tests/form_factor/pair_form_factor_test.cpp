@@ -1,0 +1,72 @@
+// Pairs that are told apart before they are integrated, and what is known of those that are.
+
+#include "src/form_factor/pair_form_factor.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/form_factor/closed_forms.h"
+
+namespace exitance {
+namespace {
+
+PairFormFactor form_factor_of(const std::vector<Polygon>& polygons, const PairOptions& options = {}) {
+  std::vector<Role> roles(polygons.size(), Role::sheet);
+  roles[0] = roles[1] = Role::patch;
+  const PolygonSoup soup(polygons, roles);
+  const ExchangeScene scene(soup);
+  return PairIntegrator(scene).form_factor(0, 1, options);
+}
+
+const Polygon kSquare{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {}};
+
+/// Side by side, facing each other over a gap that is no more than rounding.
+TEST(PairFormFactor, WhatAGapOfRoundingLetsThroughIsWithinItsError) {
+  constexpr double h = 0x1p-49;
+  const PairFormFactor f = form_factor_of({kSquare, {{{1, 0, h}, {1, 1, h}, {2, 1, h}, {2, 0, h}}, {}}});
+  // What plates of twice the width exchange is twice what the halves do with those opposite and with those beside.
+  const double beside = opposite_rectangles(2, 1, h) - opposite_rectangles(1, 1, h);
+  EXPECT_GT(beside, 0);
+  EXPECT_EQ(f.F, 0);
+  EXPECT_EQ(f.kind, PairClass::blocked);
+  EXPECT_GE(f.F_error, beside);
+  EXPECT_LE(f.F_error, 1000 * beside);
+}
+
+/// Facing the same way, turned towards each other by no more than rounding.
+TEST(PairFormFactor, ATurnOfRoundingLetsNextToNothingThrough) {
+  constexpr double h = 0x1p-49;
+  const PairFormFactor f = form_factor_of({kSquare, {{{1, 0, 0}, {2, 0, h}, {2, 1, h}, {1, 1, 0}}, {}}});
+  EXPECT_EQ(f.F, 0);
+  EXPECT_GE(f.F_error, h * h);
+  EXPECT_LE(f.F_error, 1e-27);
+}
+
+TEST(PairFormFactor, IsNeverMoreThanTheUnobstructedOneHoweverFewPointsThereAre) {
+  const Polygon ceiling{{{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}}, {}},
+      plate{{{.25, .25, .75}, {.75, .25, .75}, {.75, .75, .75}, {.25, .75, .75}}, {}};
+  const auto open = static_cast<double>(opposite_rectangles(1, 1, 1));
+  for (const std::uint64_t points : {1, 10, 30, 100}) {
+    PairOptions options;
+    options.points = points;
+    const PairFormFactor f = form_factor_of({kSquare, ceiling, plate}, options);
+    EXPECT_FALSE(f.reached);
+    EXPECT_GE(f.F, 0);
+    EXPECT_LE(f.F, open * (1 + 1e-14));
+    EXPECT_LE(f.F_error, open * (1 + 1e-14));
+    EXPECT_LE(std::fabs(f.F - static_cast<double>(kShapiroBlocked)), f.F_error);
+  }
+}
+
+/// DESIGN.md 3 found 288 points for 9e-15.
+TEST(PairFormFactor, OneConvexBlockerTakesThreeHundredPoints) {
+  const Polygon ceiling{{{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}}, {}},
+      plate{{{.25, .25, .75}, {.75, .25, .75}, {.75, .75, .75}, {.25, .75, .75}}, {}};
+  const PairFormFactor f = form_factor_of({kSquare, ceiling, plate});
+  EXPECT_TRUE(f.reached);
+  EXPECT_LE(f.F_error, 1e-12);
+  EXPECT_LE(f.points, 320u);
+  EXPECT_NEAR(f.F, static_cast<double>(kShapiroBlocked), 1e-15);
+}
+
+}  // namespace
+}  // namespace exitance
