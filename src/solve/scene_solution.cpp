@@ -96,7 +96,7 @@ class SceneSolver {
           options_.method == Method::gather ? static_cast<double>(matrix_bytes(patches, patches, density)) : rows;
       return static_cast<std::uint64_t>(std::min(2 * rows + beside, 0x1p63));
     };
-    // Looking at some rows takes time that small scenes need not spend.
+    // Looking at some rows takes time that small scenes need not spend; rays keep what they ask for, seen or not.
     if (needed(1) <= options_.memory_limit || options_.rays) return needed(1);
     return needed(expected_row_length(*visibility_) / static_cast<double>(patches));
   }
