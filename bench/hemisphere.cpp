@@ -10,7 +10,7 @@ namespace {
 
 struct View {
   Receiver receiver;
-  std::vector<RaySampledVisibility::Rays> shadow_rays;  ///< to some of the facets that are seen, drawn at random
+  std::vector<ShadowRays::Rays> shadow_rays;  ///< to some of the facets that are seen, drawn at random
 };
 
 struct Hemispheres {
@@ -34,7 +34,7 @@ struct Hemispheres {
   }
 
   MeasuredRoom room;
-  RaySampledVisibility rays;
+  ShadowRays rays;
   std::vector<View> views;
   std::size_t visible = 0;  ///< facets, from all points together
 };

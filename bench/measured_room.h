@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "geometry/viewpoint.h"
-#include "src/form_factor/point_rows.h"
 #include "src/scene/furnished_room.h"
 #include "src/scene/patch_mesh.h"
-#include "src/visibility/ray_sampled_visibility.h"
+#include "src/visibility/exact_visibility.h"
+#include "src/visibility/shadow_rays.h"
 
 namespace exitance {
 

@@ -21,8 +21,8 @@ struct Questions {
   explicit Questions(std::int64_t polygons) : room(furnished_room(polygons)), rays(room.soup, {.rays = kRays}) {
     std::mt19937_64 random(2);
     Viewpoint view(room.soup);
-    const RaySampledVisibility many(room.soup, {.rays = 1024, .replicates = 16});
-    const RaySampledVisibility farther(room.soup, {.rays = 1024, .replicates = 16, .offset = 2 * RayOptions{}.offset});
+    const ShadowRays many(room.soup, {.rays = 1024, .replicates = 16});
+    const ShadowRays farther(room.soup, {.rays = 1024, .replicates = 16, .offset = 2 * RayOptions{}.offset});
     while (pairs.size() < kPairs) {
       const Element& element = random_element(room, random);
       const Pair pair{receiver_at(element), {static_cast<std::uint32_t>(below(random, room.facets())), {}}};
@@ -55,9 +55,9 @@ struct Questions {
   }
 
   MeasuredRoom room;
-  RaySampledVisibility rays;
+  ShadowRays rays;
   std::vector<Pair> pairs;
-  std::vector<RaySampledVisibility::Rays> shadow_rays;  ///< of each pair
+  std::vector<ShadowRays::Rays> shadow_rays;  ///< of each pair
 };
 
 const Questions& questions(std::int64_t polygons) {

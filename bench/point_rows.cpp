@@ -1,5 +1,7 @@
 // Rows of form factors by one thread and by two, in turns.
 
+#include "src/form_factor/point_rows.h"
+
 #include <tbb/global_control.h>
 
 #include <chrono>
@@ -17,7 +19,7 @@ PointRows timed_rows(const MeasuredRoom& room, std::size_t threads, double& wall
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   const std::size_t first = room.mesh.elements.size() / 2;
   const auto start = std::chrono::steady_clock::now();
-  PointRows rows = point_rows(room.mesh, room.soup, first, first + kRows);
+  PointRows rows = point_rows(ExactVisibility(room.mesh, room.soup), first, first + kRows);
   wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return rows;
 }

@@ -22,7 +22,7 @@
 #include "src/scene/furnished_room.h"
 #include "src/scene/reader.h"
 #include "src/solve/scene_solution.h"
-#include "src/visibility/ray_sampled_visibility.h"
+#include "src/visibility/shadow_rays.h"
 
 namespace exitance {
 namespace {
@@ -82,7 +82,7 @@ void compare_with_rays(const Question& question, int pairs, CsvTable& table) {
   const PatchMesh mesh = make_patch_mesh(question.scene, soup, {.patch_size = 0.5});
   const ExchangeScene exchange(soup, mesh);
   PairIntegrator integrator(exchange);
-  const RaySampledVisibility rays(soup, {.rays = kRays});
+  const ShadowRays rays(soup, {.rays = kRays});
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit;
   int found = 0, outside_3 = 0;

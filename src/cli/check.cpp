@@ -18,6 +18,7 @@
 #include "src/form_factor/point_rows.h"
 #include "src/scene/patch_mesh.h"
 #include "src/scene/scene_check.h"
+#include "src/visibility/exact_visibility.h"
 
 namespace exitance {
 namespace {
@@ -49,8 +50,9 @@ Closure measure_closure(const Scene& scene, bool closed, std::size_t points, std
   std::vector<std::size_t> elements;
   for (std::size_t k = 0; k < points; ++k) elements.push_back(random() % mesh.elements.size());
   ProgressDisplay display;
-  const PointRowStatistics found = point_row_statistics(
-      mesh, soup, elements, [&](double fraction, std::string_view label) { display.show(fraction, label); });
+  const PointRowStatistics found =
+      point_row_statistics(ExactVisibility(mesh, soup), elements,
+                           [&](double fraction, std::string_view label) { display.show(fraction, label); });
   closure.points = points;
   closure.covered_points = found.covered_points;
   closure.max_defect = found.closure_max_defect;

@@ -65,6 +65,7 @@ int main(int argc, char** argv) {
       "Results go to stdout or to -o, progress and messages to stderr.");
   add_cases(app);
   add_check(app);
+  add_compare(app);
   add_diff(app);
   add_formfactor(app);
   add_generate(app);

@@ -15,6 +15,7 @@
 #include "src/cli/interrupt.h"
 #include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
+#include "src/cli/ray_settings.h"
 #include "src/cli/scene_options.h"
 #include "src/cli/verbs.h"
 #include "src/output/process_memory.h"
@@ -68,8 +69,14 @@ std::string summary(const Report& r) {
   const std::string quadrature = points ? " (quadrature of sample points)" : "";
   line("reciprocity defect", number_or(r.reciprocity_max_defect, "not measured") + quadrature);
   line("energy balance defect", number_or(r.energy_balance_defect, "not measured") + quadrature);
-  line("error bound", fmt::format("{:.3g} of B max (solver {:.3g}, form factors {:.3g})", r.error_bound,
-                                  r.solver_error_bound, r.form_factor_error));
+  if (r.rays) {
+    line("rays", fmt::format("{} in all; mean standard error of form factors {}", r.rays->cast,
+                             number_or(r.rays->mean_standard_error, "unknown")));
+    line("error bound", fmt::format("none, as rays prove nothing (solver {:.3g} of B max)", r.solver_error_bound));
+  } else {
+    line("error bound", fmt::format("{:.3g} of B max (solver {:.3g}, form factors {:.3g})", r.error_bound,
+                                    r.solver_error_bound, r.form_factor_error));
+  }
   line("B min, B max", fmt::format("{:.12g}, {:.12g} {}", r.B_min, r.B_max, r.unit));
   return text;
 }
@@ -93,9 +100,7 @@ class Solve {
                     "Error of each form factor of --receivers area")
         ->check(positive_number())
         ->capture_default_str();
-    verb.add_option("--visibility", visibility_, "How visibility is decided")
-        ->check(CLI::IsMember({"exact"}))
-        ->capture_default_str();
+    rays_.add_to(verb);
     verb.add_option("--patch-size", options_.mesh.patch_size, "Longest edge of a patch [m]; 0: surfaces as they are")
         ->check(number_between(0))
         ->capture_default_str();
@@ -113,7 +118,7 @@ class Solve {
         ->check(positive_number());
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
         ->check(whole_number_between(1, kMostThreads));
-    verb.add_option("--seed", options_.seed, "Of the pairs whose reciprocity is measured")
+    verb.add_option("--seed", options_.seed, "Of rays, and of the pairs whose reciprocity is measured")
         ->check(whole_number_between(0))
         ->capture_default_str();
     verb.add_option("-o,--output", folder_, "Folder for result.json, solution.vtp, solution.ply and image.png");
@@ -121,7 +126,8 @@ class Solve {
     verb.footer(fmt::format(
         "Exit code 1: the solver did not reach the tolerance, or front and back of a closed scene miss 1 by more than "
         "{} at\n"
-        "some sample point. The results are saved all the same. Ctrl-C saves what has been shot so far, exit code 4.",
+        "some sample point (of rays that is reported, no failure). The results are saved all the same. Ctrl-C saves "
+        "what has been shot so far, exit code 4.",
         kLargestClosureDefect));
   }
 
@@ -169,6 +175,7 @@ class Solve {
     options_.method = method_ == "shoot" ? Method::shoot : Method::gather;
     options_.gather_method = kSolvers.at(solver_);
     options_.receivers = receivers_ == "area" ? Receivers::area : Receivers::points;
+    options_.rays = rays_.chosen(options_.seed);
     options_.max_shots = shots_;
     options_.memory_limit = memory_limit_ ? static_cast<std::uint64_t>(std::min(*memory_limit_ * 0x1p30, 0x1p63))
                                           : available_memory_bytes();
@@ -193,7 +200,8 @@ class Solve {
       with(check_failed, fmt::format("the solver reached an error bound of {:.3g}, not the tolerance of {:.3g}",
                                      report.solver_error_bound, options_.tolerance));
     }
-    if (report.closure_max_defect && !(*report.closure_max_defect <= kLargestClosureDefect + solution.closure_error)) {
+    if (!report.rays && report.closure_max_defect &&
+        !(*report.closure_max_defect <= kLargestClosureDefect + solution.closure_error)) {
       with(check_failed,
            fmt::format("the scene is closed, but front and back miss 1 by {:.3g} at some {}",
                        *report.closure_max_defect, report.receivers == "points" ? "sample point" : "element"));
@@ -203,7 +211,8 @@ class Solve {
   CLI::App& verb_;
   SceneOptions scene_;
   SolveOptions options_;
-  std::string method_ = "gather", solver_ = "gauss-seidel", receivers_ = "points", visibility_ = "exact";
+  RaySettings rays_;
+  std::string method_ = "gather", solver_ = "gauss-seidel", receivers_ = "points";
   std::optional<std::uint64_t> shots_;
   std::optional<double> time_limit_, memory_limit_;
   std::optional<std::size_t> threads_;

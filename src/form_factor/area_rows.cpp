@@ -7,10 +7,7 @@
 #include "src/form_factor/pair_sample.h"
 
 namespace exitance {
-namespace {
-
-/// Columns of elements summed to columns of patches; both ascend together.
-FormFactorMatrix to_patches(const FormFactorMatrix& elements, const PatchMesh& mesh) {
+FormFactorMatrix sum_to_patches(const FormFactorMatrix& elements, const PatchMesh& mesh) {
   FormFactorMatrix patches;
   patches.columns = static_cast<std::uint32_t>(mesh.patches.size());
   for (std::size_t e = 0; e < elements.rows(); ++e) {
@@ -33,14 +30,12 @@ FormFactorMatrix to_patches(const FormFactorMatrix& elements, const PatchMesh& m
   return patches;
 }
 
-bool may_be_covered(const PatchMesh& mesh, const PolygonSoup& soup, const Element& element) {
-  return std::ranges::any_of(mesh.pieces_of(element), [&](const PatchPiece& piece) {
+bool may_be_covered(const PolygonSoup& soup, std::span<const PatchPiece> pieces) {
+  return std::ranges::any_of(pieces, [&](const PatchPiece& piece) {
     return std::ranges::any_of(soup.coplanar(piece.facet),
                                [&](std::uint32_t t) { return soup.covers(t, piece.facet); });
   });
 }
-
-}  // namespace
 
 AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOptions& options, std::uint64_t seed,
                    const Progress& progress) {
@@ -64,7 +59,7 @@ AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOpt
   for (std::uint32_t e = 0; e < n; ++e) {
     const auto errors = elements.row_error(e);
     result.largest_row_error = std::max(result.largest_row_error, std::accumulate(errors.begin(), errors.end(), 0.0));
-    if (may_be_covered(mesh, soup, mesh.elements[e])) {
+    if (may_be_covered(soup, mesh.pieces_of(mesh.elements[e]))) {
       ++result.covered_elements;
     } else {
       result.closure_max_defect = std::max(result.closure_max_defect, std::fabs(sums[e] - 1));
@@ -75,7 +70,7 @@ AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOpt
   for (const PairDefect& pair : sample.reciprocity) {
     result.reciprocity_max_defect = std::max(result.reciprocity_max_defect.value_or(0), pair.amount);
   }
-  result.F = to_patches(elements, mesh);
+  result.F = sum_to_patches(elements, mesh);
   return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "src/form_factor/form_factor_matrix.h"
 #include "src/form_factor/pair_rows.h"
@@ -29,5 +30,11 @@ struct AreaRows {
 /// pairs whose reciprocity is measured. Where options.stop ends the work, F is empty.
 AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOptions& options, std::uint64_t seed,
                    const Progress& progress = {});
+
+/// Columns of elements summed to columns of patches, with the errors and the rounding.
+FormFactorMatrix sum_to_patches(const FormFactorMatrix& elements, const PatchMesh& mesh);
+
+/// Whether something in the planes of an element's or a patch's pieces covers it, wholly or in part, or might.
+bool may_be_covered(const PolygonSoup& soup, std::span<const PatchPiece> pieces);
 
 }  // namespace exitance

@@ -85,6 +85,8 @@ void write_axes(std::ostream& out, const Plot& plot, const Axis& x, const Axis& 
              escaped(plot.x_label));
   fmt::print(out, "<text transform=\"translate(20 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
              (kTop + bottom) / 2, escaped(plot.y_label));
+  fmt::print(out, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" font-size=\"9\" fill=\"#555\">{}</text>\n", kWidth - 8,
+             kHeight - 4, escaped(plot.note));
 }
 
 void write_series(std::ostream& out, const PlotSeries& series, std::string_view colour, const Axis& x, const Axis& y) {

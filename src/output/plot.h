@@ -16,7 +16,8 @@ struct PlotSeries {
 
 struct Plot {
   std::string title, x_label, y_label;
-  std::vector<PlotSeries> series;
+  std::vector<PlotSeries> series = {};
+  std::string note = {};  ///< in small print below all: what it was made with
 };
 
 /// Both axes are logarithmic and span whole decades. Points that are not positive and finite have no place and are left

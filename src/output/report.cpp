@@ -13,6 +13,14 @@ Json or_null(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
+Json rays(const std::optional<Report::Rays>& rays) {
+  if (!rays) return nullptr;
+  return {{"sampler", rays->sampler}, {"estimator", rays->estimator},
+          {"rays", rays->rays},       {"replicates", rays->replicates},
+          {"offset", rays->offset},   {"seed", rays->seed},
+          {"cast", rays->cast},       {"mean_standard_error", or_null(rays->mean_standard_error)}};
+}
+
 Json manifest(const Report& r) {
   return {{"version", r.manifest.version},     {"commit", r.manifest.commit}, {"compiler", r.manifest.compiler},
           {"libraries", r.manifest.libraries}, {"threads", r.threads},        {"seed", r.seed},
@@ -31,6 +39,7 @@ std::string to_json(const Report& r) {
                      {"method", r.method},
                      {"receivers", r.receivers},
                      {"visibility", r.visibility},
+                     {"rays", rays(r.rays)},
                      {"converged", r.converged},
                      {"iterations", r.iterations},
                      {"residual", r.residual},

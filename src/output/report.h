@@ -28,6 +28,16 @@ struct Report {
   std::string method;      ///< "gather", "shoot"
   std::string receivers;   ///< "points" or "area"
   std::string visibility;  ///< "exact" or "rays"
+  /// Of visibility "rays".
+  struct Rays {
+    std::string sampler, estimator;
+    std::uint64_t rays = 0, replicates = 0;  ///< of each pair, or of each hemisphere
+    double offset = 0;                       ///< of the scene's radius
+    std::uint64_t seed = 0;
+    std::uint64_t cast = 0;                     ///< in all
+    std::optional<double> mean_standard_error;  ///< of the form factors; none where nothing is known of it
+  };
+  std::optional<Rays> rays;
 
   bool converged = false;
   std::uint64_t iterations = 0;

@@ -5,13 +5,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include "src/form_factor/area_rows.h"
+#include "src/form_factor/sampled_area_rows.h"
 #include "src/scene/input_error.h"
 #include "src/scene/scene_check.h"
 #include "src/solve/error_bound.h"
 #include "src/solve/shoot.h"
+#include "src/visibility/exact_visibility.h"
+#include "src/visibility/ray_sampled_visibility.h"
 
 namespace exitance {
 namespace {
@@ -27,19 +31,6 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-Discretisation discretise(const Scene& scene, const PatchMesh& mesh) {
-  Discretisation d;
-  d.bands = scene.bands;
-  for (const Patch& patch : mesh.patches) {
-    d.element_first.push_back(patch.element_first + patch.element_count);
-    const Material& material = scene.materials[scene.surfaces[patch.surface].material];
-    d.rho.insert(d.rho.end(), material.rho.begin(), material.rho.end());
-    d.E.insert(d.E.end(), material.E.begin(), material.E.end());
-  }
-  for (const Element& element : mesh.elements) d.element_area.push_back(element.area);
-  return d;
-}
 
 // Means over the elements of each patch, weighted by area.
 std::vector<double> patch_means(const Discretisation& d, std::span<const double> of_element) {
@@ -67,7 +58,15 @@ class SceneSolver {
     check(result_.discretisation);
     result_.closed = is_closed(scene);
     result_.receivers = options.receivers;
+    result_.rays = options.rays;
+    if (options.rays) {
+      visibility_ = std::make_unique<RaySampledVisibility>(result_.mesh, result_.soup, *options.rays);
+    } else {
+      visibility_ = std::make_unique<ExactVisibility>(result_.mesh, result_.soup);
+    }
   }
+  SceneSolver(const SceneSolver&) = delete;  // visibility_ refers to mesh and soup
+  SceneSolver& operator=(const SceneSolver&) = delete;
 
   SceneSolution solve() && {
     if (options_.method == Method::gather) {
@@ -97,9 +96,9 @@ class SceneSolver {
           options_.method == Method::gather ? static_cast<double>(matrix_bytes(patches, patches, density)) : rows;
       return static_cast<std::uint64_t>(std::min(2 * rows + beside, 0x1p63));
     };
-    // Looking at some rows takes time that small scenes need not spend.
-    if (needed(1) <= options_.memory_limit) return needed(1);
-    return needed(expected_row_length(result_.mesh, result_.soup) / static_cast<double>(patches));
+    // Looking at some rows takes time that small scenes need not spend; rays keep what they ask for, seen or not.
+    if (needed(1) <= options_.memory_limit || options_.rays) return needed(1);
+    return needed(expected_row_length(*visibility_) / static_cast<double>(patches));
   }
 
   void refuse_too_large_a_matrix() const {
@@ -116,6 +115,12 @@ class SceneSolver {
   bool stopped() const { return options_.stop && options_.stop(); }
 
   FormFactorMatrix area_rows_of_elements(const Progress& report) {
+    if (options_.rays) {
+      SampledAreaRows rows =
+          sampled_area_rows(result_.mesh, result_.soup, ExchangeScene::Unit::element, *options_.rays, report);
+      result_.statistics = rows.statistics;
+      return std::move(rows.F);
+    }
     PairOptions how;
     how.tolerance = options_.form_factor_tolerance;
     how.stop = options_.stop;
@@ -142,7 +147,7 @@ class SceneSolver {
       F = area_rows_of_elements(report);
       if (F.rows() == 0) refuse();
     } else {
-      PointRows rows = point_rows(result_.mesh, result_.soup, 0, result_.mesh.elements.size(), report);
+      PointRows rows = point_rows(*visibility_, 0, result_.mesh.elements.size(), report);
       result_.statistics = rows.statistics;
       F = std::move(rows.F);
     }
@@ -180,7 +185,7 @@ class SceneSolver {
     result_.element_row_sum.assign(n, 0);
     std::vector<bool> is_known(result_.mesh.patches.size());
     const auto column = [&](std::size_t patch, std::span<double> F, std::span<double> F_error) {
-      point_column(result_.mesh, result_.soup, patch, F, F_error);
+      point_column(*visibility_, patch, F, F_error);
       if (is_known[patch]) return;
       is_known[patch] = true;
       for (std::size_t e = 0; e < n; ++e) result_.element_row_sum[e] += F[e];
@@ -214,7 +219,7 @@ class SceneSolver {
     const std::size_t n = result_.mesh.elements.size(), count = std::min(n, kSample);
     std::vector<std::size_t> sample;
     for (std::size_t k = 0; k < count; ++k) sample.push_back(n * (2 * k + 1) / (2 * count));
-    result_.statistics += point_row_statistics(result_.mesh, result_.soup, sample);
+    result_.statistics += point_row_statistics(*visibility_, sample);
     result_.measured_points = count;
   }
 
@@ -235,8 +240,8 @@ class SceneSolver {
       const std::size_t i = random() % n, j = random() % n;
       if (i == j) continue;
       const double A_i = result_.mesh.patches[i].area, A_j = result_.mesh.patches[j].area;
-      const double F_ij = patch_form_factor(result_.mesh, result_.soup, i, j).F;
-      const double F_ji = patch_form_factor(result_.mesh, result_.soup, j, i).F;
+      const double F_ij = patch_form_factor(*visibility_, i, j).F;
+      const double F_ji = patch_form_factor(*visibility_, j, i).F;
       if (F_ij == 0 && F_ji == 0) continue;
       ++pairs;
       const double defect = std::fabs(A_i * F_ij - A_j * F_ji) / std::min(A_i, A_j);
@@ -247,10 +252,24 @@ class SceneSolver {
   const SolveOptions& options_;
   Stopwatch stopwatch_;
   SceneSolution result_;
+  std::unique_ptr<MeshVisibility> visibility_;
   bool all_columns_known_ = false;
 };
 
 }  // namespace
+
+Discretisation discretise(const Scene& scene, const PatchMesh& mesh) {
+  Discretisation d;
+  d.bands = scene.bands;
+  for (const Patch& patch : mesh.patches) {
+    d.element_first.push_back(patch.element_first + patch.element_count);
+    const Material& material = scene.materials[scene.surfaces[patch.surface].material];
+    d.rho.insert(d.rho.end(), material.rho.begin(), material.rho.end());
+    d.E.insert(d.E.end(), material.E.begin(), material.E.end());
+  }
+  for (const Element& element : mesh.elements) d.element_area.push_back(element.area);
+  return d;
+}
 
 SceneSolution solve_scene(const Scene& scene, const SolveOptions& options) {
   return SceneSolver(scene, options).solve();

@@ -15,6 +15,7 @@
 #include "src/scene/scene.h"
 #include "src/solve/gather.h"
 #include "src/solve/radiosity_system.h"
+#include "src/visibility/ray_options.h"
 
 namespace exitance {
 
@@ -31,7 +32,8 @@ enum class Receivers : std::uint8_t {
 struct SolveOptions {
   Method method = Method::gather;
   Receivers receivers = Receivers::points;
-  double form_factor_tolerance = 1e-9;  ///< of the rows of receivers `area`: absolute
+  double form_factor_tolerance = 1e-9;  ///< of the rows of receivers `area`: absolute; exact visibility only
+  std::optional<RayOptions> rays;       ///< visibility by these; exact where there are none
   GatherMethod gather_method = GatherMethod::gauss_seidel;
   MeshOptions mesh;
   double tolerance = 1e-12;  ///< of the solver: bound of B's error relative to max B; > 0
@@ -65,6 +67,7 @@ struct SceneSolution {
   bool stopped = false;  ///< max_shots or `stop` ended the work before the tolerance was reached
 
   Receivers receivers = Receivers::points;
+  std::optional<RayOptions> rays;  ///< as asked
   /// Of `measured_points` elements: all of them, or a sample spread evenly where there is no matrix. Of receivers
   /// `area` the covered ones are those that may be.
   PointRowStatistics statistics;
@@ -74,12 +77,15 @@ struct SceneSolution {
   std::optional<double> energy_balance_defect;
   /// max |A_i F_ij − A_j F_ji| / min(A_i, A_j) of up to 64 random pairs that see each other, each F integrated anew
   /// over its own receiver. With sample points as receivers this shows the error of that quadrature, not of visibility.
-  /// With receivers `area`: of up to 64 partial pairs of patches, integrated anew over both.
+  /// With receivers `area`: of up to 64 partial pairs of patches, integrated anew over both; not measured with rays.
   /// None where no such pair was found, or time was up.
   std::optional<double> reciprocity_max_defect;
 
   double seconds_form_factors = 0, seconds_solve = 0;  ///< wall clock; shooting without a matrix is all `solve`
 };
+
+/// The materials and areas of a mesh of the scene.
+Discretisation discretise(const Scene& scene, const PatchMesh& mesh);
 
 /// Solves the scene. The same bits for any number of threads. REQUIRES: a scene as read_scene returns it.
 /// Throws InputError for a scene in which no surface has an area, LimitError when the form factors of gathering would

@@ -44,6 +44,21 @@ std::vector<double> shown_B(const SceneSolution& s, std::span<const double> rho)
   return B;
 }
 
+std::optional<Report::Rays> rays_of(const SceneSolution& s) {
+  if (!s.rays) return {};
+  Report::Rays rays{.sampler = to_string(s.rays->sampler),
+                    .estimator = to_string(s.rays->estimator),
+                    .rays = s.rays->rays,
+                    .replicates = s.rays->replicates,
+                    .offset = s.rays->offset,
+                    .seed = s.rays->seed,
+                    .cast = s.statistics.rays,
+                    .mean_standard_error = {}};
+  if (s.statistics.sampled > 0)
+    rays.mean_standard_error = s.statistics.standard_error_sum / static_cast<double>(s.statistics.sampled);
+  return rays;
+}
+
 // Of the elements that see something; of all where none does.
 std::pair<double, double> range_of_B(const SceneSolution& s) {
   constexpr double far = std::numeric_limits<double>::infinity();
@@ -67,7 +82,8 @@ Report make_report(const Scene& scene, const SceneSolution& s) {
   report.bands = scene.bands;
   report.unit = scene.unit;
   report.receivers = s.receivers == Receivers::area ? "area" : "points";
-  report.visibility = "exact";
+  report.visibility = s.rays ? "rays" : "exact";
+  report.rays = rays_of(s);
   report.converged = s.patches.converged;
   report.iterations = s.patches.iterations;
   report.residual = s.patches.residual;

@@ -119,7 +119,8 @@ TEST_F(SolveTest, ReceiversMayBeWholeElements) {
 
 TEST_F(SolveTest, AnyNumberOfThreadsGivesTheSameBits) {
   for (const char* method :
-       {"gather", "gather --receivers area --form-factor-tolerance 1e-4", "shoot", "shoot --memory-limit 1e-9"}) {
+       {"gather", "gather --receivers area --form-factor-tolerance 1e-4", "shoot", "shoot --memory-limit 1e-9",
+        "gather --visibility rays --rays 16", "gather --visibility rays --rays 64 --estimator hemisphere"}) {
     const std::string options = std::string("--patch-size 0.2 --method ") + method + " --threads ";
     auto one = solve(data("cornell_box_closed.toml"), options + "1", "one");
     auto two = solve(data("cornell_box_closed.toml"), options + "2", "two");
@@ -132,6 +133,46 @@ TEST_F(SolveTest, AnyNumberOfThreadsGivesTheSameBits) {
       EXPECT_EQ(contents(file("one", name)), contents(file("two", name))) << method << " " << name;
     }
   }
+}
+
+TEST_F(SolveTest, RaysComeNearAndSayWhatTheyAre) {
+  const std::string scene = data("cornell_box_closed.toml"), size = "--patch-size 0.3 ";
+  const auto exact = solve(scene, size, "exact");
+  EXPECT_TRUE(exact.at("rays").is_null());
+  double previous = 0.1;
+  for (const int n : {4, 1024}) {
+    const auto rays = solve(scene, size + "--visibility rays --seed 5 --rays " + std::to_string(n), "rays");
+    EXPECT_EQ(rays.at("visibility"), "rays");
+    const auto& of = rays.at("rays");
+    EXPECT_EQ(of.at("sampler"), "sobol");
+    EXPECT_EQ(of.at("estimator"), "kernel");
+    EXPECT_EQ(of.at("rays"), n);
+    EXPECT_EQ(of.at("seed"), 5);
+    EXPECT_GT(of.at("cast"), 100 * n);
+    EXPECT_GT(of.at("mean_standard_error"), 0);
+    const double apart = difference("exact", "rays");
+    EXPECT_LT(apart, previous);
+    EXPECT_GT(apart, 0);
+    previous = apart / 4;
+  }
+  const auto hemisphere =
+      solve(scene, size + "--visibility rays --rays 16384 --estimator hemisphere --sampler owen", "hemisphere");
+  EXPECT_EQ(hemisphere.at("closure_max_defect"), 0) << "no ray leaked";
+  EXPECT_LT(difference("exact", "hemisphere"), 0.01);
+  const auto centre = solve(scene, size + "--visibility rays --estimator centre", "centre");
+  EXPECT_TRUE(centre.at("rays").at("mean_standard_error").is_null());
+  EXPECT_GT(difference("exact", "centre"), difference("exact", "rays"));
+  solve(scene, size + "--visibility rays --rays 64 --receivers area", "area");
+  solve(scene, size + "--visibility rays --rays 64 --method shoot --memory-limit 1e-9", "shot");
+  solve(scene, size + "--visibility rays --rays 64", "gathered");
+  EXPECT_LT(difference("gathered", "shot"), 2e-12) << "the same rays";
+}
+
+TEST_F(SolveTest, OptionsOfRaysNeedRays) {
+  const Outcome outcome = run("solve " + data("furnace_cube.toml") + " --rays 64");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(outcome.one_line_on_stderr()) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::HasSubstr("--visibility rays"));
 }
 
 TEST_F(SolveTest, RefusesAMatrixThatDoesNotFit) {

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "src/scene/furnished_room.h"
+#include "src/visibility/exact_visibility.h"
 
 namespace exitance {
 namespace {
@@ -51,8 +52,10 @@ void add_room(Scene& scene, const Vec3& low, const Vec3& high) {
 struct Rows {
   explicit Rows(const Scene& scene, const MeshOptions& options = {})
       : soup(make_soup(scene)), mesh(make_patch_mesh(scene, soup, options)) {}
-  PointRows all() const { return point_rows(mesh, soup, 0, mesh.elements.size()); }
-  PointRows some(std::size_t first, std::size_t last) const { return point_rows(mesh, soup, first, last); }
+  PointRows all() const { return point_rows(ExactVisibility(mesh, soup), 0, mesh.elements.size()); }
+  PointRows some(std::size_t first, std::size_t last) const {
+    return point_rows(ExactVisibility(mesh, soup), first, last);
+  }
 
   PolygonSoup soup;
   PatchMesh mesh;
@@ -230,7 +233,7 @@ TEST(PointRows, RowsAndColumnsAreThoseOfTheWholeMatrix) {
   for (std::size_t e = 50; e < 60; ++e) EXPECT_EQ(row(middle.F, e - 50), row(all.F, e));
   std::vector<double> F(rows.mesh.elements.size()), F_error(F.size());
   for (const std::size_t patch : {0u, 17u, 199u}) {
-    point_column(rows.mesh, rows.soup, patch, F, F_error);
+    point_column(ExactVisibility(rows.mesh, rows.soup), patch, F, F_error);
     for (std::size_t e = 0; e < F.size(); ++e) EXPECT_EQ(F[e], row(all.F, e)[patch]) << e << ' ' << patch;
   }
   EXPECT_EQ(rows.some(7, 7).F.rows(), 0u);
@@ -304,13 +307,13 @@ TEST(PointRows, StatisticsOfSomeElementsAreThoseOfTheirRows) {
   const std::vector<std::size_t> elements = {31, 7, 198, 7};
   PointRowStatistics expected;
   for (const std::size_t e : elements) expected += rows.some(e, e + 1).statistics;
-  const PointRowStatistics found = point_row_statistics(rows.mesh, rows.soup, elements);
+  const PointRowStatistics found = point_row_statistics(ExactVisibility(rows.mesh, rows.soup), elements);
   EXPECT_EQ(found.closure_max_defect, expected.closure_max_defect);
   EXPECT_EQ(found.covered_points, expected.covered_points);
   EXPECT_EQ(found.pairs.open, expected.pairs.open);
   EXPECT_EQ(found.pairs.partial, expected.pairs.partial);
   EXPECT_EQ(found.pairs.blocked, expected.pairs.blocked);
-  EXPECT_EQ(point_row_statistics(rows.mesh, rows.soup, {}).covered_points, 0u);
+  EXPECT_EQ(point_row_statistics(ExactVisibility(rows.mesh, rows.soup), {}).covered_points, 0u);
 }
 
 TEST(PointRows, TheOrderOfPolygonsChangesNoMoreThanTheErrorBoundsSay) {

@@ -44,6 +44,7 @@ TEST(PlotTest, WhatHasNoLogarithmIsLeftOutWithTheLineToIt) {
 
 TEST(PlotTest, NamesAreEscapedAndEmptyPlotsDrawn) {
   EXPECT_THAT(drawn({"a < b & c", "", "", {}}), HasSubstr("a &lt; b &amp; c"));
+  EXPECT_THAT(drawn({"", "", "", {}, "made with x < y"}), HasSubstr("made with x &lt; y"));
 }
 
 TEST(PlotTest, AFileThatCannotBeWrittenIsNamed) {

@@ -1,0 +1,28 @@
+#pragma once
+// What a plot was made with.
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <string>
+
+#include "src/output/manifest.h"
+
+namespace exitance {
+
+/// Processor, program, compiler and libraries.
+inline std::string plot_note() {
+  std::string processor = "unknown processor";
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (!line.starts_with("model name")) continue;
+    processor = line.substr(line.find(':') + 2);
+    break;
+  }
+  const Manifest build = build_manifest();
+  return fmt::format("{}; exitance {} ({}), {}, Embree {}, CGAL {}", processor, build.version,
+                     build.commit.substr(0, 7), build.compiler, build.libraries.at("Embree"),
+                     build.libraries.at("CGAL"));
+}
+
+}  // namespace exitance

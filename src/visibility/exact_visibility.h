@@ -1,0 +1,26 @@
+#pragma once
+// Exact visibility of a mesh's patches from its sample points.
+
+#include "geometry/polygon_soup.h"
+#include "src/visibility/visibility.h"
+
+namespace exitance {
+
+/// Proven error that double precision must reach, else extended precision is asked. True errors are about a thousandth
+/// of it: a source behind hundreds of occluders has hundreds of arcs, each with its own worst case.
+inline constexpr double kPointTolerance = 1e-11;
+
+class ExactVisibility final : public MeshVisibility {
+ public:
+  /// Keeps references. The mesh must be of the soup's scene (make_patch_mesh).
+  ExactVisibility(const PatchMesh& mesh, const PolygonSoup& soup) : mesh_(mesh), soup_(soup) {}
+
+  const PatchMesh& mesh() const override { return mesh_; }
+  std::unique_ptr<Observer> observer() const override;
+
+ private:
+  const PatchMesh& mesh_;
+  const PolygonSoup& soup_;
+};
+
+}  // namespace exitance
