@@ -151,10 +151,10 @@ class SceneFile {
   // One of the four forms. Its materials are its own; those of the file are named by surfaces through named_.
   Scene read_shape(TomlTable& table, const std::string& name) {
     named_.clear();
-    const int forms = table.has("mesh") + table.has("polygons") + table.has("box") + table.has("furnished_room");
-    if (forms != 1) table.fail(table.line(), "an object needs exactly one of mesh, polygons, box and furnished_room");
+    const int forms = table.has("mesh") + table.has("polygons") + table.has("box") + table.has("furnished-room");
+    if (forms != 1) table.fail(table.line(), "an object needs exactly one of mesh, polygons, box and furnished-room");
     if (const auto mesh = table.string("mesh")) return read_mesh_part(table, *mesh, name);
-    if (auto room = table.table("furnished_room")) return read_furnished_room(*room, name);
+    if (auto room = table.table("furnished-room")) return read_furnished_room(*room, name);
     Scene part;
     part.objects.push_back({name.empty() ? fmt::format("object {}", scene_.objects.size()) : name, table.file()});
     part.materials.push_back({.name = "", .rho = {}, .E = {}, .file = table.file(), .line = table.line()});

@@ -21,7 +21,7 @@
 //   mesh = "table.obj"              # relative to this file; .obj, .ply, .off or .stl
 //   polygons = [ [[x,y,z], …], {polygon = [[x,y,z], …], holes = [[[x,y,z], …]], material = "white"} ]
 //   box = {min = [x,y,z], max = [x,y,z]}          # six faces that look outward; flip = true makes a room of it
-//   furnished_room = {polygons = 500, seed = 1}   # a room made by rules, see furnished_room.h
+//   furnished-room = {polygons = 500, seed = 1}   # a room made by rules, see furnished_room.h
 //
 //   material = "white"              # for all its faces, whatever the mesh says
 //   materials = {wood = "white"}    # or for those of some of the mesh's materials

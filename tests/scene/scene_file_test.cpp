@@ -147,7 +147,7 @@ TEST_F(SceneFileTest, ReflectancesOfMeshesCanBeLimited) {
 }
 
 TEST_F(SceneFileTest, FurnishedRoom) {
-  const Scene scene = read("[[object]]\nname = \"flat\"\nfurnished_room = {polygons = 300, seed = 1}\n");
+  const Scene scene = read("[[object]]\nname = \"flat\"\nfurnished-room = {polygons = 300, seed = 1}\n");
   EXPECT_EQ(scene.surfaces.size(), 300u);
   EXPECT_THAT(scene.objects.at(0).name, testing::StartsWith("flat/"));
   EXPECT_TRUE(is_closed(scene));
