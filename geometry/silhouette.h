@@ -4,7 +4,8 @@
 // The faces of a solid that are seen from the front form layers over the directions from the point of view. Their
 // number changes by one across every edge of the silhouette (edges between a face seen from the front and one that is
 // not), up towards the front face, and is 0 below the horizon, above which the whole solid must lie. So along an edge
-// pq of anything it is found by going on from p along the great circle through q, half way round, to below the horizon:
+// pq of anything, p an end above the horizon, it is found by going on from p along the great circle through q, half way
+// round, to below the horizon:
 // where a silhouette edge cd crosses, the signs of c and d against the plane of pq differ, and the sign of p against
 // that of cd tells whether it crosses before or behind p, and which way. No corner of the chain, no depth and no other
 // layer matters: of 1,000 faces of a vase 60 edges are left (Appel 1967 counts layers in front of an edge in the same
@@ -28,7 +29,7 @@ struct Silhouette {
   Cone<Real> cone;                                 ///< its edges, in any order; the solid on their inner sides
   std::vector<std::vector<Stretch<Real>>> hidden;  ///< of each, what the solid itself covers on its outer side
   std::vector<bool> is_hidden;                     ///< whether that is all of it
-  bool is_whole = false;  ///< above the horizon, without edges that coincide; otherwise it must not be used
+  bool is_usable = false;                          ///< above the horizon, without edges that coincide
 };
 
 /// What the functionals of one view are evaluated with.
@@ -57,10 +58,14 @@ class LayersOverEdge {
     row_.fill(edge, solid.corners, evaluation.frame, evaluation.counts);
     changes_.clear();
     int before = 0;  // layers at the edge's start
-    int anchor = -1;
+    int anchor = -1, broken_tie = 0;
+    const auto side_of = [&](std::uint32_t corner) {
+      if (const int sign = row_.sign(corner); sign != 0) return sign;
+      if (broken_tie == 0) broken_tie = break_tie(edge, tie, evaluation.frame);
+      return broken_tie;
+    };
     for (const ConeSide<Real>& crossed : solid.sides) {
-      const int side_from = side_of_corner(crossed.from, edge, solid, tie, evaluation.frame),
-                side_to = side_of_corner(crossed.to, edge, solid, tie, evaluation.frame);
+      const int side_from = side_of(crossed.from), side_to = side_of(crossed.to);
       if (side_from == side_to) continue;
       // Below the horizon is the end of the way from an end that is above.
       if (anchor < 0) anchor = is_above(cone.corners, edge.from, evaluation) ? 0 : 1;
@@ -88,10 +93,9 @@ class LayersOverEdge {
     int step = 0;
   };
 
-  int side_of_corner(std::uint32_t k, const ConeSide<Real>& edge, const Cone<Real>& solid, Tie tie,
-                     const ViewFrame& frame) const {
-    const int sign = row_.sign(k);
-    if (sign != 0 || tie == Tie::own_edge) return sign != 0 ? sign : 1;
+  /// The side of the edge on which corners of the solid are taken to lie that are in its plane.
+  static int break_tie(const ConeSide<Real>& edge, Tie tie, const ViewFrame& frame) {
+    if (tie == Tie::own_edge) return 1;
     const int moved = gradient_sign(frame, edge.exact);
     return moved == 0 ? 1 : tie == Tie::silhouette_moves ? moved : -moved;
   }
@@ -120,32 +124,26 @@ class LayersOverEdge {
     return at_from.sign > 0 ? Change{stretch.hi, stretch.hi_error, 0} : Change{stretch.lo, stretch.lo_error, 0};
   }
 
-  /// A stretch for every layer, the first that begins the first to end: so crossings that rounding puts in the wrong
-  /// order still end a stretch, with their errors.
+  /// A stretch for every layer, the first that begins the first to end, whatever order rounding has put the crossings
+  /// in: so each end of what is covered keeps its error.
   bool append(int layers, std::vector<Stretch<Real>>& covered) {
     if (changes_.empty()) {
       if (layers > 0) covered.emplace_back();
       return layers > 0;
     }
     std::ranges::stable_sort(changes_, {}, &Change::t);
-    begun_.clear();
-    std::size_t ended = 0;
-    for (int k = 0; k < layers; ++k) begun_.push_back({});
-    const auto end_one = [&](const Change& c) {
-      if (ended < begun_.size()) covered.push_back({begun_[ended].t, c.t, begun_[ended].error, c.error, false});
-      ++ended;
-    };
-    for (const Change& c : changes_) {
-      if (c.step > 0 && layers >= 0) begun_.push_back(c);
-      if (c.step < 0 && layers > 0) end_one(c);
-      layers += c.step;
+    begun_.assign(static_cast<std::size_t>(std::max(layers, 0)), Change{});
+    ended_.clear();
+    for (const Change& c : changes_) (c.step > 0 ? begun_ : ended_).push_back(c);
+    if (ended_.size() < begun_.size()) ended_.resize(begun_.size(), Change{Real(1), Real(0), -1});
+    for (std::size_t k = 0; k < begun_.size(); ++k) {
+      covered.push_back({begun_[k].t, ended_[k].t, begun_[k].error, ended_[k].error, false});
     }
-    while (ended < begun_.size()) end_one({Real(1), Real(0), 0});
     return false;
   }
 
   Row<Real> row_;
-  std::vector<Change> changes_, begun_;
+  std::vector<Change> changes_, begun_, ended_;
 };
 
 /// Whether edges that lie in one plane through the point of view run the same way and overlap.
@@ -173,7 +171,7 @@ void find_hidden(Silhouette<Real>& silhouette, const Evaluation& evaluation) {
       const ConeSide<Real>& other = cone.sides[j];
       const bool in_one_plane = j != k && row.sign(other.from) == 0 && row.sign(other.to) == 0;
       if (in_one_plane && coincide(evaluation.frame.x, edge.exact, other.exact)) {
-        silhouette.is_whole = false;
+        silhouette.is_usable = false;
         return;
       }
     }

@@ -114,8 +114,8 @@ class ViewCones {
     }
     set_cone<Real>(silhouette.cone, view_.receiver().point, loop_, -1, nullptr, next_);
     const auto& vertices = soup_.shells()[shell].vertices;
-    silhouette.is_whole = std::ranges::all_of(vertices, [&](std::uint32_t v) { return view_.horizon(v) > 0; });
-    if (!silhouette.is_whole) return;
+    silhouette.is_usable = std::ranges::all_of(vertices, [&](std::uint32_t v) { return view_.horizon(v) > 0; });
+    if (!silhouette.is_usable) return;
     const ViewFrame frame{view_.receiver().point, view_.receiver().normal, {}};
     find_hidden(silhouette, {frame, view_.counts(), 0x1p-46});
   }

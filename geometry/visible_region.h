@@ -75,11 +75,11 @@ class VisibleRegion {
   }
 
   /// Adds an occluder. A shell must have the point outside its box and be all on the point's side of the source's plane
-  /// (place_of), and one that is not convex must have a whole silhouette.
+  /// (place_of), and one that is not convex must have a usable silhouette.
   Effect add(const OccluderId& occluder);
 
-  /// Whether a shell that is not convex, with the point outside its box, has a whole silhouette.
-  bool has_silhouette(std::uint32_t shell) { return cones_.silhouette_of(shell).is_whole; }
+  /// Whether a shell that is not convex, with the point outside its box, has a usable silhouette.
+  bool has_silhouette(std::uint32_t shell) { return cones_.silhouette_of(shell).is_usable; }
 
   enum class Place { nowhere, in_front, across };
 

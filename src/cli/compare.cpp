@@ -39,11 +39,8 @@ std::uint64_t bytes_of(const FormFactorMatrix& F) {
 
 /// A scene cut into patches of one element each.
 struct Subject {
-  Subject(const Scene& of_scene, double patch_size)
-      : scene(of_scene),
-        soup(make_soup(scene)),
-        mesh(make_patch_mesh(scene, soup, {.patch_size = patch_size})),
-        exchange(soup, mesh) {
+  Subject(const Scene& of_scene, const MeshOptions& options)
+      : scene(of_scene), soup(make_soup(scene)), mesh(make_patch_mesh(scene, soup, options)), exchange(soup, mesh) {
     if (mesh.patches.empty()) throw InputError(scene.name, 0, "no surface has an area; there is nothing to compare");
   }
   Subject(const Subject&) = delete;
@@ -100,7 +97,7 @@ class Compare {
     const std::vector<Contender> contenders = contenders_named(names_, rays_);
     const Scene scene = scene_.read();
     for (const std::string& warning : scene.warnings) print_warning(warning);
-    const Subject subject(scene, patch_size_);
+    const Subject subject(scene, {.patch_size = patch_size_, .memory_limit = available_bytes()});
     refuse_what_does_not_fit(subject.exchange);
     if (!reference_.empty()) reference_record_ = read_solution(reference_);
     describe(subject, threads);
@@ -133,13 +130,16 @@ class Compare {
     report_.warnings = subject.scene.warnings;
   }
 
+  std::uint64_t available_bytes() const {
+    return memory_limit_ ? static_cast<std::uint64_t>(std::min(*memory_limit_ * 0x1p30, 0x1p63))
+                         : available_memory_bytes();
+  }
+
   /// The truth with its classes, and one contender at a time.
   void refuse_what_does_not_fit(const ExchangeScene& exchange) const {
     const std::uint64_t n = exchange.size();
     const std::uint64_t needed = 2 * pair_rows_bytes(n, expected_pair_density(exchange)) + n * n;
-    const std::uint64_t available = memory_limit_
-                                        ? static_cast<std::uint64_t>(std::min(*memory_limit_ * 0x1p30, 0x1p63))
-                                        : available_memory_bytes();
+    const std::uint64_t available = available_bytes();
     if (needed <= available) return;
     throw LimitError(
         fmt::format("the form factors of {} patches would take about {:.3g} GiB of memory and {:.3g} GiB "
@@ -157,12 +157,10 @@ class Compare {
   void find_truth(const Subject& subject) {
     ProgressDisplay display;
     const RunClock clock;
-    const PairRun rows =
-        run_pairs(subject.exchange,
-                  {.pairs = truth_,
-                   .progress = [&](double fraction, std::string_view) { display.show(fraction, "truth"); },
-                   .stop = interrupted},
-                  nullptr);
+    const PairRun rows = run_pairs(
+        subject.exchange,
+        {.pairs = truth_, .progress = [&](double fraction, std::string_view) { display.show(fraction, "truth"); }},
+        nullptr);
     if (!rows.complete) throw LimitError("stopped before the truth was known");
     truth_matrix_ = truth_of(rows.rows, static_cast<std::uint32_t>(subject.exchange.size()));
     report_.truth_seconds = clock.seconds();
@@ -246,7 +244,7 @@ class Compare {
   SceneOptions scene_;
   std::vector<std::string> names_;
   RayOptions rays_;
-  PairOptions truth_{.tolerance = 1e-10};
+  PairOptions truth_{.tolerance = 1e-10, .stop = interrupted};
   double patch_size_ = 0;
   std::size_t worst_ = 10;
   std::optional<std::size_t> threads_;

@@ -67,6 +67,7 @@ AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOpt
   }
   constexpr std::size_t kPairs = 64;
   const PairSample sample = sample_pairs(scene, std::span(&all, 1), options, kPairs, seed);
+  if (!sample.complete) return {};
   for (const PairDefect& pair : sample.reciprocity) {
     result.reciprocity_max_defect = std::max(result.reciprocity_max_defect.value_or(0), pair.amount);
   }

@@ -17,7 +17,9 @@ namespace {
 
 void by(const PairOptions& pairs, const PatchMesh&, const ExchangeScene& exchange, const Progress& progress,
         const std::function<bool()>& stop, ContenderRun& result) {
-  const PairRun rows = run_pairs(exchange, {.pairs = pairs, .progress = progress, .stop = stop}, nullptr);
+  PairOptions options = pairs;
+  options.stop = stop;
+  const PairRun rows = run_pairs(exchange, {.pairs = options, .progress = progress}, nullptr);
   if (!rows.complete) stopped();
   result.queries = rows.statistics.points;
   result.F = matrix_of(rows.rows, static_cast<std::uint32_t>(exchange.size()));

@@ -48,6 +48,7 @@ Fault find_fault(const WorstPair& pair, PairClass kind, Maker maker, const Patch
     return may_be_covered(exchange.soup(), mesh.pieces_of(mesh.patches[patch]));
   };
   if (kind == PairClass::facing_away) return Fault::seen_from_behind;
+  if (maker == Maker::exact) return Fault::integration;  // visibility is no question
   const bool by_rays = maker == Maker::shadow_rays || maker == Maker::hemisphere_rays;
   if (kind == PairClass::open) {
     // Shadow rays are weighed against what an open pair exchanges: all that arrive make no error.
@@ -59,7 +60,7 @@ Fault find_fault(const WorstPair& pair, PairClass kind, Maker maker, const Patch
   if (kind == PairClass::blocked || (pair.truth == 0 && pair.F > 0)) return Fault::leak;
   if (pair.F == 0) return Fault::missed_gap;
   if (pair.F >= unoccluded(exchange, pair.i, pair.j) * (1 - 1e-6)) return Fault::missed_occluder;
-  return by_rays ? Fault::sampling : maker == Maker::exact ? Fault::integration : Fault::unknown;
+  return by_rays ? Fault::sampling : Fault::unknown;
 }
 
 }  // namespace exitance

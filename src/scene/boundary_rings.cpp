@@ -10,9 +10,22 @@ namespace {
 
 using Mesh = OpenMesh::PolyMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
 
+/// Keeps OpenMesh from speaking of every face that it refuses, as long as this lives.
+class Silence {
+ public:
+  Silence() : was_enabled_(::omerr().is_enabled()) { ::omerr().disable(); }
+  ~Silence() {
+    if (was_enabled_) ::omerr().enable();
+  }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+ private:
+  bool was_enabled_;
+};
+
 /// The mesh of some polygons, its faces in their order; false when they are no manifold.
 bool make_mesh(std::span<const Polygon> polygons, std::span<const std::uint32_t> chosen, Mesh& mesh) {
-  OpenMesh::omerr().disable();  // it speaks of every face that it refuses
   std::map<std::array<double, 3>, Mesh::VertexHandle> vertex_at;
   for (const std::uint32_t p : chosen) {
     if (!polygons[p].holes.empty()) return false;
@@ -48,6 +61,7 @@ void add_rings(const Mesh& mesh, std::span<const std::uint32_t> polygon_of_face,
 
 std::vector<BoundaryRing> find_boundary_rings(std::span<const Polygon> polygons,
                                               std::span<const std::uint32_t> object) {
+  const Silence silence;
   std::map<std::uint32_t, std::vector<std::uint32_t>> polygons_of;
   for (std::uint32_t p = 0; p < polygons.size(); ++p) polygons_of[object[p]].push_back(p);
   std::vector<BoundaryRing> rings;

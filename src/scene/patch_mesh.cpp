@@ -11,7 +11,7 @@
 
 #include "geometry/radiator.h"
 #include "src/scene/input_error.h"
-#include "src/scene/sample_point.h"
+#include "src/scene/sample_site.h"
 
 namespace exitance {
 namespace {
@@ -579,7 +579,7 @@ class Mesher {
 
   const Scene& scene_;
   const PolygonSoup& soup_;
-  SamplePoints samples_;
+  SampleSite samples_;
   double size_;
   std::uint32_t per_edge_;
   PatchMesh mesh_;

@@ -28,7 +28,7 @@ struct Patch {
 };
 
 /// The unit that receives, with one sample point: interior to it and to the facet it is on, away from the facet's edges
-/// (the centroid of its largest piece, or a point beside that where another surface ends or crosses: SamplePoints). Its
+/// (the centroid of its largest piece, or a point beside that where another surface ends or crosses: SampleSite). Its
 /// pieces tile it exactly. The loop is its outline for drawing: where it has one piece, that piece; a quadrilateral
 /// bent along its surface's diagonal: the four corners; an element that is a whole surface: the outer loop, which tells
 /// nothing of the holes.

@@ -50,8 +50,8 @@ class ShadowRayObserver final : public Observer {
   }
 
   PointFormFactor entry(std::size_t element, std::size_t patch) override {
-    const double F = to_patch(element, static_cast<std::uint32_t>(patch)).F;
-    return {.F = F, .error = F > 0 ? kBoundOfAny : 0, .side = Side::front};
+    const SampledFormFactor f = to_patch(element, static_cast<std::uint32_t>(patch));
+    return {.F = f.F, .error = f.F_unoccluded > 0 ? kBoundOfAny : 0, .side = Side::front};
   }
 
  private:

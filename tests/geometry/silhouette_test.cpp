@@ -94,7 +94,7 @@ TEST(Silhouette, AgreesWithTheOracle) {
       ViewCones<double> cones(view);
       for (std::uint32_t s = 0; s < soup.shells().size(); ++s) {
         ++asked;
-        by_silhouette += view.outside(soup.shells()[s]) && cones.silhouette_of(s).is_whole;
+        by_silhouette += view.outside(soup.shells()[s]) && cones.silhouette_of(s).is_usable;
       }
     }
   }

@@ -12,13 +12,13 @@ namespace exitance {
 /// Of a convex loop [m].
 Vec3 centroid(std::span<const Vec3> loop);
 
-/// Finds sample points. The corners of patches are rounded: from a point at a distance d of an edge, patches that end
-/// there miss or overlap what they should tile by the rounding over d, up to the whole view where d is a rounding
-/// itself. So sample points keep away from where other surfaces end or pass. Holds scratch memory; the soup must
-/// outlive it.
-class SamplePoints {
+/// Finds where sample points go. The corners of patches are rounded: from a point at a distance d of an edge, patches
+/// that end there miss or overlap what they should tile by the rounding over d, up to the whole view where d is a
+/// rounding itself. So sample points keep away from where other surfaces end or pass. Holds scratch memory; the soup
+/// must outlive it.
+class SampleSite {
  public:
-  explicit SamplePoints(const PolygonSoup& soup) : soup_(soup) {}
+  explicit SampleSite(const PolygonSoup& soup) : soup_(soup) {}
 
   /// A point of the convex piece `loop` of a facet: its centroid, or, where another polygon's edge or a polygon that
   /// crosses the facet is nearer to that than 2^-20 of the scene's extent, or than 1/64 of the way to the nearest

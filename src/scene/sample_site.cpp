@@ -1,4 +1,4 @@
-#include "src/scene/sample_point.h"
+#include "src/scene/sample_site.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ Vec3 centroid(std::span<const Vec3> loop) {
   return loop[0] + (1 / (3 * area)) * moment;
 }
 
-Vec3 SamplePoints::choose(std::uint32_t facet, std::span<const Vec3> loop) {
+Vec3 SampleSite::choose(std::uint32_t facet, std::span<const Vec3> loop) {
   const Vec3 middle = centroid(loop);
   double enough = kEnough * soup_.extent();
   for (const Vec3& corner : loop) enough = std::min(enough, kEnoughOfElement * norm(corner - middle));
@@ -51,7 +51,7 @@ Vec3 SamplePoints::choose(std::uint32_t facet, std::span<const Vec3> loop) {
 }
 
 /// Distance to the nearest hindrance, at most `enough`.
-double SamplePoints::clearance(const Vec3& p, std::uint32_t facet, double enough) {
+double SampleSite::clearance(const Vec3& p, std::uint32_t facet, double enough) {
   Box box;
   box.extend(p - Vec3{enough, enough, enough});
   box.extend(p + Vec3{enough, enough, enough});
@@ -72,7 +72,7 @@ double SamplePoints::clearance(const Vec3& p, std::uint32_t facet, double enough
 }
 
 /// In roundings' accuracy, as no answer depends on it.
-double SamplePoints::clearance_of(const Vec3& p, const Facet& other, const Facet& own, double enough) const {
+double SampleSite::clearance_of(const Vec3& p, const Facet& other, const Facet& own, double enough) const {
   if (other.polygon == own.polygon) return enough;
   const Vec3& normal = other.plane.normal;
   const double size = norm(normal);
