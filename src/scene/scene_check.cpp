@@ -257,6 +257,7 @@ class SceneChecker {
     report_.watertight = !found.pieces.empty();
     for (const auto& [edge, in_contact] : found.open_edges) {
       report_.watertight = report_.watertight && in_contact;
+      if (!in_contact) open_objects_.insert(scene_.surfaces[surface_of_[edge.polygon]].object);
       add(in_contact ? FindingKind::contact_edge : FindingKind::open_edge, surface_of_[edge.polygon],
           norm(edge.to - edge.from));
     }
@@ -274,11 +275,15 @@ class SceneChecker {
         found, [&](std::uint32_t polygon) -> const Surface& { return scene_.surfaces[surface_of_[polygon]]; });
   }
 
+  /// Of objects with open edges: what others close at a T-junction or by contact is no boundary.
   void check_boundary_rings() {
     std::vector<std::uint32_t> object;
     for (const std::uint32_t surface : surface_of_) object.push_back(scene_.surfaces[surface].object);
     for (const BoundaryRing& ring : find_boundary_rings(polygons_, object)) {
-      add(FindingKind::boundary_ring, surface_of_[ring.polygon], ring.length);
+      const std::uint32_t surface = surface_of_[ring.polygon];
+      if (open_objects_.contains(scene_.surfaces[surface].object)) {
+        add(FindingKind::boundary_ring, surface, ring.length);
+      }
     }
   }
 
@@ -302,6 +307,7 @@ class SceneChecker {
 
   const Scene& scene_;
   bool emits_ = false, any_patch_ = false;
+  std::set<std::uint32_t> open_objects_;
   SceneReport report_;
   std::map<FindingKind, Finding> findings_;
   std::vector<Polygon> polygons_;          // those that geometry can work with

@@ -18,11 +18,11 @@ enum class FindingKind {
   reflectance,  ///< rho outside [0, 1), or E negative, too small or too large; counts materials
   no_patch,     ///< no face has an area and is more than an obstruction
   no_emitter,   ///< nothing emits
-  duplicate_face,       ///< a face that is there already, facing the same way; `amount` is their area [m²]
-  non_manifold_edge,    ///< an edge of one object used by more than two faces, or twice in the same direction
-  open_edge,            ///< an edge that no other cancels and that ends on no surface; `amount` is their length [m]
-  boundary_ring,        ///< a ring of edges that bounds the mesh of an object (boundary_rings.h); `amount` likewise
-  contact_edge,         ///< an edge that no other cancels, but that ends on a surface; `amount` likewise
+  duplicate_face,     ///< a face that is there already, facing the same way; `amount` is their area [m²]
+  non_manifold_edge,  ///< an edge of one object used by more than two faces, or twice in the same direction
+  open_edge,          ///< an edge that no other cancels and that ends on no surface; `amount` is their length [m]
+  boundary_ring,  ///< a ring that bounds the mesh of an object with open edges (boundary_rings.h); `amount` likewise
+  contact_edge,   ///< an edge that no other cancels, but that ends on a surface; `amount` likewise
   overlap_same_facing,  ///< two faces in one plane, one lying on the other; `amount` is the area in common [m²]
   overlap_against,      ///< two faces in one plane in contact, front to front or back to back; `amount` likewise
   inside_out,           ///< a closed piece of surface that seems to face the wrong way; `amount` is its area [m²]
