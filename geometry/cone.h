@@ -204,25 +204,13 @@ struct Drop {
   std::span<const double> height;  ///< of each corner, a bound of how far it drops
 };
 
-/// How far a corner drops along the frame's axis, S(v) / N, and a bound of the error.
+/// How far a corner drops along the frame's axis, S(v) / N; 0 where none does.
 template <class Real>
-struct DropOf {
-  Real by{0}, error{0};
-};
-
-/// 0 where no corner drops. n is wrong by at most 8 u |p||q| in all and so is N, n · d by that times |d| and by 7 u of
-/// |n||d|, where |n| ≤ |p||q|: of a sliver, whose |N| is small against |p||q|, far more than a rounding of the drop.
-template <class Real>
-DropOf<Real> drop_of(const Drop* drop, const Vec3& v) {
-  using std::fabs;
-  if (drop == nullptr) return {};
+Real drop_of(const Drop* drop, const Vec3& v) {
+  if (drop == nullptr) return Real(0);
   const PlanePoints& S = drop->frame.S;
-  const Vec<Real> p = difference<Real>(*S.b, *S.a), q = difference<Real>(*S.c, *S.a), n = cross(p, q),
-                  d = difference<Real>(v, *S.a);
-  const Real N = drop->frame.axis == 0 ? n.x : drop->frame.axis == 1 ? n.y : n.z;
-  const Real by = dot(n, d) / N;
-  const Real relative = Real(16 * roundoff<Real>()) * norm(p) * norm(q) / fabs(N);
-  return {by, Real(Real(1.1) * relative * (norm(d) + fabs(by)))};
+  const Vec<Real> n = cross(difference<Real>(*S.b, *S.a), difference<Real>(*S.c, *S.a));
+  return dot(n, difference<Real>(v, *S.a)) / (drop->frame.axis == 0 ? n.x : drop->frame.axis == 1 ? n.y : n.z);
 }
 
 /// Sets the cone of a polygon of input points, or of what these stand for, a side from each corner to the next; it runs
@@ -230,8 +218,7 @@ DropOf<Real> drop_of(const Drop* drop, const Vec3& v) {
 /// each.
 ///
 /// In double precision corners that drop are left where they are, and what they drop is taken as their error. The sides
-/// then err by |(w + δ) × (w' + δ') − w × w'| ≤ |δ||w'| + |δ'||w| + |δ||δ'|. In other number types they are dropped,
-/// and what that errs by is δ.
+/// then err by |(w + δ) × (w' + δ') − w × w'| ≤ |δ||w'| + |δ'||w| + |δ||δ'|.
 template <class Real>
 void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop, int sign, const Drop* drop = nullptr,
               std::span<const std::uint32_t> next = {}) {
@@ -242,7 +229,7 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
   corners.resize(n);
   cone.sides.resize(n);
   std::array<Real, kLanes> from_x{}, from_y{}, from_z{}, to_x{}, to_y{}, to_z{}, e_x{}, e_y{}, e_z{}, m_x, m_y, m_z,
-      length, error, sweep, from_error{}, to_error{};
+      length, error, sweep;
   for (std::size_t first = 0; first < n; first += kLanes) {
     const std::size_t used = std::min(kLanes, n - first);
     for (std::size_t k = 0; k < used; ++k) {
@@ -263,26 +250,23 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
         auto& from = drop->frame.axis == 0 ? from_x : drop->frame.axis == 1 ? from_y : from_z;
         auto& to = drop->frame.axis == 0 ? to_x : drop->frame.axis == 1 ? to_y : to_z;
         auto& e = drop->frame.axis == 0 ? e_x : drop->frame.axis == 1 ? e_y : e_z;
-        const DropOf<Real> at_from = drop_of<Real>(drop, *loop[first + k]),
-                           at_to = drop_of<Real>(drop, *loop[next_to(first + k)]);
-        from[k] -= at_from.by;
-        to[k] -= at_to.by;
-        e[k] -= at_to.by - at_from.by;
-        const Real u = roundoff<Real>();
-        from_error[k] = at_from.error + 4 * u * norm(Vec<Real>{from_x[k], from_y[k], from_z[k]});
-        to_error[k] = at_to.error + 4 * u * norm(Vec<Real>{to_x[k], to_y[k], to_z[k]});
-      }
-    } else {
-      for (std::size_t k = 0; k < used && drop != nullptr; ++k) {
-        from_error[k] = drop->height[first + k];
-        to_error[k] = drop->height[next_to(first + k)];
+        const Real at_from = drop_of<Real>(drop, *loop[first + k]),
+                   at_to = drop_of<Real>(drop, *loop[next_to(first + k)]);
+        from[k] -= at_from;
+        to[k] -= at_to;
+        e[k] -= at_to - at_from;
       }
     }
     auto& c = corners.block(first / kLanes);
     c.x = from_x;
     c.y = from_y;
     c.z = from_z;
-    c.error = from_error;
+    c.error.fill(Real(0));
+    for (std::size_t k = 0; k < used && drop != nullptr; ++k) {
+      c.error[k] = std::is_same_v<Real, double>
+                       ? Real(drop->height[first + k])
+                       : Real(4 * roundoff<Real>() * norm(Vec<Real>{from_x[k], from_y[k], from_z[k]}));
+    }
     if constexpr (std::is_same_v<Real, double>) {
       const auto vectors = [](const auto& vx, const auto& vy, const auto& vz) {
         return Vec<Doubles>{load(vx.data()), load(vy.data()), load(vz.data())};
@@ -321,12 +305,12 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
       side.exact = {ViewPlane::Kind::edge, sign, loop[side.from], loop[side.to], nullptr, drop != nullptr};
       side.stretch = {};
       side.across = 0xffffffffu;
-      if (drop != nullptr) {
-        const Real to_length = norm(Vec<Real>{to_x[k], to_y[k], to_z[k]});
-        side.error +=
-            Real(1.01) * (from_error[k] * to_length + to_error[k] * c.length[k] + from_error[k] * to_error[k]);
-      }
       if constexpr (std::is_floating_point_v<Real>) {
+        if (drop != nullptr && std::is_same_v<Real, double>) {
+          const Real a = drop->height[side.from], b = drop->height[side.to];
+          const Real to_length = norm(Vec<Real>{to_x[k], to_y[k], to_z[k]});
+          side.error += Real(1.01) * (a * to_length + b * c.length[k] + a * b);
+        }
         if (side.error > 512 * kRoundoff * side.length) {  // the edge's line passes near x
           const Vec3 m =
               sign * (drop ? exact_cross(drop->frame, side.exact) : exact_cross(x, *side.exact.c, *side.exact.d));
