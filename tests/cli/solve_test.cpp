@@ -205,7 +205,8 @@ TEST_F(SolveTest, SavesWhatIsThereWhenTimeIsUpOrInterrupted) {
   ASSERT_EQ(run("generate furnished-room --polygons 4000 -o " + room).code, 0);
   const std::string solve_room =
       "solve " + room + " --method shoot --memory-limit 0.1 -o " + (scratch / "room").string();
-  const Outcome interrupted = run(solve_room, "timeout --preserve-status -s INT 8");  // well into its shots
+  const Outcome interrupted =
+      run(solve_room, "timeout --foreground --preserve-status -s INT 8");  // well into its shots
   EXPECT_EQ(interrupted.code, 4) << interrupted.err;
   EXPECT_FALSE(json_in(file("room", "result.json")).at("converged"));
 }
