@@ -5,11 +5,10 @@
 // number changes by one across every edge of the silhouette (edges between a face seen from the front and one that is
 // not), up towards the front face, and is 0 below the horizon, above which the whole solid must lie. So along an edge
 // pq of anything, p an end above the horizon, it is found by going on from p along the great circle through q, half way
-// round, to below the horizon:
-// where a silhouette edge cd crosses, the signs of c and d against the plane of pq differ, and the sign of p against
-// that of cd tells whether it crosses before or behind p, and which way. No corner of the chain, no depth and no other
-// layer matters: of 1,000 faces of a vase 60 edges are left (Appel 1967 counts layers in front of an edge in the same
-// way).
+// round, to below the horizon: where a silhouette edge cd crosses, the signs of c and d against the plane of pq differ,
+// and the sign of p against that of cd tells whether it crosses before or behind p, and which way. No corner of the
+// chain, no depth and no other layer matters: of 1,000 faces of a vase 60 edges are left (Appel 1967 counts layers in
+// front of an edge in the same way).
 //
 // Ties of a corner of a solid with an edge of another body are broken by moving the one of them by an infinitesimal
 // (gradient_sign), the same for all edges, so that all answers are those of one and the same scene, whose form factor

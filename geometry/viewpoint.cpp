@@ -113,6 +113,10 @@ struct Viewpoint::State {
   bool add_flush_faces(std::uint32_t facet);
   bool add_items(std::span<const std::uint32_t> items);
   bool add_silhouettes();
+  void forget_silhouettes() {
+    for (const std::uint32_t s : by_silhouette) in_silhouette[s] = 0;
+    by_silhouette.clear();
+  }
   bool is_of_silhouette(std::uint32_t facet) const {
     const std::uint32_t shell = soup.facets()[facet].shell;
     return shell != kNone && in_silhouette[shell] != 0;
@@ -236,8 +240,7 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
 /// Adds the silhouettes of shells of which many facets were found; their facets are then not asked for. False when one
 /// hides all of the source. A source's own shell lies on both sides of its plane, or not in front of it at all.
 bool Viewpoint::State::add_silhouettes() {
-  for (const std::uint32_t s : by_silhouette) in_silhouette[s] = 0;
-  by_silhouette.clear();
+  forget_silhouettes();
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
   const std::uint32_t own = soup.facets()[region.source_facet()].shell;
   for (const std::uint32_t item : found) {
@@ -433,8 +436,7 @@ bool Viewpoint::State::put_items(const Source& source, int source_facing, std::s
   candidates.facets.assign(items.begin(), items.end());
   set_source<double>(source.facet, source_facing);
   region.will_add_only(items);
-  for (const std::uint32_t s : by_silhouette) in_silhouette[s] = 0;
-  by_silhouette.clear();
+  forget_silhouettes();
   return add_flush_faces(source.facet) && add_items(items);
 }
 

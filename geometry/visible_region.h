@@ -175,7 +175,8 @@ class VisibleRegion {
   std::vector<std::vector<Stretch<Real>>> covered_;         // by side of the occluder being finished
   Row<Real> row_;
   LayersOverEdge<Real> layers_;
-  std::vector<Row<Real>> source_rows_;  // of each of the source's sides, at the occluder that is being added
+  std::vector<std::size_t> covered_before_;  // sizes of covered_source_ before a solid was met with the source
+  std::vector<Row<Real>> source_rows_;       // of each of the source's sides, at the occluder that is being added
   std::vector<Signed<Real>> weight_;
   std::vector<Stretch<Real>> within_, open_;
   std::vector<const Vec3*> loop_;  // of the source
@@ -513,14 +514,14 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_silhouette(Added& 
   const Cone<Real>& cone = *added.cone;
   if (is_apart(cone)) return Effect::none;
   bool any = false, whole = true;
-  std::vector<std::size_t> covered_before;
+  covered_before_.clear();
   for (std::size_t k = 0; k < source_.sides.size(); ++k) {
     auto& covered = covered_source_[k];
-    covered_before.push_back(covered.size());
+    covered_before_.push_back(covered.size());
     const bool all =
         layers_.find(source_, source_.sides[k], *added.silhouette, Tie::silhouette_moves, evaluation(), covered);
     whole = whole && all;
-    any = any || covered.size() > covered_before.back();
+    any = any || covered.size() > covered_before_.back();
   }
   added.edges.clear();
   added.bounds = false;
@@ -542,7 +543,7 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_silhouette(Added& 
   }
   if (!any && !added.bounds) return Effect::none;
   if (whole && !added.bounds) {
-    for (std::size_t k = 0; k < source_.sides.size(); ++k) covered_source_[k].resize(covered_before[k]);
+    for (std::size_t k = 0; k < source_.sides.size(); ++k) covered_source_[k].resize(covered_before_[k]);
     return Effect::whole;
   }
   chart_.set(count_, chart_.box_of(cone));
