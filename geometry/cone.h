@@ -204,32 +204,53 @@ struct Drop {
   std::span<const double> height;  ///< of each corner, a bound of how far it drops
 };
 
-/// How far a corner drops along the frame's axis, S(v) / N; 0 where none does.
+/// How far a corner drops along the frame's axis, S(v) / N, and a bound of the error.
 template <class Real>
-Real drop_of(const Drop* drop, const Vec3& v) {
-  if (drop == nullptr) return Real(0);
-  const PlanePoints& S = drop->frame.S;
-  const Vec<Real> n = cross(difference<Real>(*S.b, *S.a), difference<Real>(*S.c, *S.a));
-  return dot(n, difference<Real>(v, *S.a)) / (drop->frame.axis == 0 ? n.x : drop->frame.axis == 1 ? n.y : n.z);
+struct DropOf {
+  Real by{0}, error{0};
+};
+
+/// 0 where no corner drops. In long double the drop is the rounded exact one, since arithmetic of 64 bits knows that of
+/// a sliver, whose |N| is small against |p||q|, far worse than to a rounding. In Extended: n is wrong by at most 8 u
+/// |p||q| in all and so is N, n · d by that times |d| and by 7 u of |n||d|, where |n| ≤ |p||q|.
+template <class Real>
+DropOf<Real> drop_of(const Drop* drop, const Vec3& v) {
+  using std::fabs;
+  if (drop == nullptr) return {};
+  if constexpr (std::is_same_v<Real, long double>) {
+    const Real by = exact_drop(drop->frame, v);
+    return {by, Real(0x1p-50) * fabs(by)};
+  } else {
+    const PlanePoints& S = drop->frame.S;
+    const Vec<Real> p = difference<Real>(*S.b, *S.a), q = difference<Real>(*S.c, *S.a), n = cross(p, q),
+                    d = difference<Real>(v, *S.a);
+    const Real N = drop->frame.axis == 0 ? n.x : drop->frame.axis == 1 ? n.y : n.z;
+    const Real by = dot(n, d) / N;
+    const Real relative = Real(16 * roundoff<Real>()) * norm(p) * norm(q) / fabs(N);
+    return {by, Real(Real(1.1) * relative * (norm(d) + fabs(by)))};
+  }
 }
 
 /// Sets the cone of a polygon of input points, or of what these stand for, a side from each corner to the next; it runs
 /// so that sign · det(c − x, d − x, v − x) is positive inside. Of several loops `next` tells which corner is next to
 /// each.
 ///
-/// In double precision corners that drop are left where they are, and what they drop is taken as their error. The sides
-/// then err by |(w + δ) × (w' + δ') − w × w'| ≤ |δ||w'| + |δ'||w| + |δ||δ'|.
+/// In double precision corners that drop are left where they are, and what they drop is taken as their error δ. The
+/// sides then err by |(w + δ) × (w' + δ') − w × w'| ≤ |δ||w'| + |δ'||w| + |δ||δ'|. In other number types they are
+/// dropped: that rounds w and e once more, for which the sides' error is doubled; δ is the error of the drop itself,
+/// and 3 u of it where w is small against it.
 template <class Real>
 void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop, int sign, const Drop* drop = nullptr,
               std::span<const std::uint32_t> next = {}) {
   const std::size_t n = loop.size();
   const auto next_to = [&](std::size_t k) { return !next.empty() ? next[k] : k + 1 < n ? k + 1 : 0; };
+  using std::fabs;
   cone.turn = sign;
   Corners<Real>& corners = cone.corners;
   corners.resize(n);
   cone.sides.resize(n);
   std::array<Real, kLanes> from_x{}, from_y{}, from_z{}, to_x{}, to_y{}, to_z{}, e_x{}, e_y{}, e_z{}, m_x, m_y, m_z,
-      length, error, sweep;
+      length, error, sweep, from_drop{}, to_drop{};
   for (std::size_t first = 0; first < n; first += kLanes) {
     const std::size_t used = std::min(kLanes, n - first);
     for (std::size_t k = 0; k < used; ++k) {
@@ -250,23 +271,26 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
         auto& from = drop->frame.axis == 0 ? from_x : drop->frame.axis == 1 ? from_y : from_z;
         auto& to = drop->frame.axis == 0 ? to_x : drop->frame.axis == 1 ? to_y : to_z;
         auto& e = drop->frame.axis == 0 ? e_x : drop->frame.axis == 1 ? e_y : e_z;
-        const Real at_from = drop_of<Real>(drop, *loop[first + k]),
-                   at_to = drop_of<Real>(drop, *loop[next_to(first + k)]);
-        from[k] -= at_from;
-        to[k] -= at_to;
-        e[k] -= at_to - at_from;
+        const DropOf<Real> at_from = drop_of<Real>(drop, *loop[first + k]),
+                           at_to = drop_of<Real>(drop, *loop[next_to(first + k)]);
+        from[k] -= at_from.by;
+        to[k] -= at_to.by;
+        e[k] -= at_to.by - at_from.by;
+        const Real roundings = Real(3 * roundoff<Real>());
+        from_drop[k] = at_from.error + roundings * fabs(at_from.by);
+        to_drop[k] = at_to.error + roundings * fabs(at_to.by);
+      }
+    } else {
+      for (std::size_t k = 0; k < used && drop != nullptr; ++k) {
+        from_drop[k] = drop->height[first + k];
+        to_drop[k] = drop->height[next_to(first + k)];
       }
     }
     auto& c = corners.block(first / kLanes);
     c.x = from_x;
     c.y = from_y;
     c.z = from_z;
-    c.error.fill(Real(0));
-    for (std::size_t k = 0; k < used && drop != nullptr; ++k) {
-      c.error[k] = std::is_same_v<Real, double>
-                       ? Real(drop->height[first + k])
-                       : Real(4 * roundoff<Real>() * norm(Vec<Real>{from_x[k], from_y[k], from_z[k]}));
-    }
+    c.error = from_drop;
     if constexpr (std::is_same_v<Real, double>) {
       const auto vectors = [](const auto& vx, const auto& vy, const auto& vz) {
         return Vec<Doubles>{load(vx.data()), load(vy.data()), load(vz.data())};
@@ -305,12 +329,12 @@ void set_cone(Cone<Real>& cone, const Vec3& x, std::span<const Vec3* const> loop
       side.exact = {ViewPlane::Kind::edge, sign, loop[side.from], loop[side.to], nullptr, drop != nullptr};
       side.stretch = {};
       side.across = 0xffffffffu;
+      if (drop != nullptr) {
+        if constexpr (!std::is_same_v<Real, double>) side.error *= 2;
+        const Real a = from_drop[k], b = to_drop[k], to_length = norm(Vec<Real>{to_x[k], to_y[k], to_z[k]});
+        side.error += Real(1.01) * (a * to_length + b * c.length[k] + a * b);
+      }
       if constexpr (std::is_floating_point_v<Real>) {
-        if (drop != nullptr && std::is_same_v<Real, double>) {
-          const Real a = drop->height[side.from], b = drop->height[side.to];
-          const Real to_length = norm(Vec<Real>{to_x[k], to_y[k], to_z[k]});
-          side.error += Real(1.01) * (a * to_length + b * c.length[k] + a * b);
-        }
         if (side.error > 512 * kRoundoff * side.length) {  // the edge's line passes near x
           const Vec3 m =
               sign * (drop ? exact_cross(drop->frame, side.exact) : exact_cross(x, *side.exact.c, *side.exact.d));

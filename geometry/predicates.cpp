@@ -270,4 +270,8 @@ Vec3 exact_cross(const ViewFrame& frame, const ViewPlane& plane) {
           scale * (p.x * q.y - p.y * q.x).to_double()};
 }
 
+double exact_drop(const ViewFrame& frame, const Vec3& v) {
+  return frame.axis_sign * (plane_value<Exact>(frame.S, v).to_double() / drop_scale<Exact>(frame).to_double());
+}
+
 }  // namespace exitance

@@ -13,7 +13,8 @@ namespace exitance {
 /// A convex source: a whole facet (empty loop) or a piece of it, whose loop runs counter-clockwise seen from the
 /// facet's front. A point of a piece lies in the facet's plane by identity: if rounded, it stands for the point exactly
 /// in the plane to which it drops along a coordinate axis (ViewFrame). Pieces that share corners tile the facet
-/// exactly, whatever lies in contact with it, and edges that they do not share with it miss its edges by a rounding.
+/// exactly, whatever lies in contact with it, and edges that they do not share with it miss its edges by a rounding: of
+/// what protrudes from the facet so, only occluders that hide something of the facet itself hide anything.
 struct Source {
   std::uint32_t facet = 0;
   std::span<const Vec3> loop;

@@ -48,6 +48,30 @@ TEST(Viewpoint, NeighbourInTheSourcesPlaneDoesNotCarryOn) {
   EXPECT_NEAR(with.F, without.F, with.error + without.error);
 }
 
+// Slivers of a turned cube's face, one plane but for rounding, seen by a point of that face from 5e-15 above a plane of
+// theirs; a piece of one has rounded corners, which drop by as much. How far, 64 bits know only 1e-17 well.
+TEST(Viewpoint, PiecesOfSliversInThePlaneOfThePointAreSeenEdgeOn) {
+  const Vec3 tip{-0.53164265169423452, -1.4856357042207127, -0.71431270830368843};
+  const auto at = [](double y, double z) { return Vec3{-1.3104793363115357, y, z}; };
+  const std::vector<Polygon> polygons = {
+      {{tip, at(-0.32922166564640476, 0.76410536182484945), at(-0.31139751844517605, 0.75503343939633782)}, {}},
+      {{tip, at(-0.29357337124394733, 0.74596151696782631), at(-0.27574922404271862, 0.7368895945393148)}, {}},
+      {{tip, at(-0.27574922404271862, 0.7368895945393148), at(-0.25792507684149002, 0.72781767211080328)}, {}},
+      {{tip, at(-0.25792507684149002, 0.72781767211080328), at(-0.24010092964026122, 0.71874574968229177)}, {}},
+      {{tip, at(-0.24010092964026122, 0.71874574968229177), at(-0.22227678243903251, 0.70967382725378014)}, {}},
+      {{at(1.1323584048543494, 0.020207722686902629), at(-0.65005631526852148, 0.92739996553805726),
+        Vec3{-1.2920581164314779, -0.64652354227485787, 0.93434101539422532}},
+       {}}};
+  const std::vector<Vec3> piece = {{-0.9210609940028851, -0.90742868493355877, 0.024896326760580512},
+                                   at(-0.32922166564640476, 0.76410536182484945),
+                                   at(-0.3203095920457904, 0.75956940061059364)};
+  const PolygonSoup soup(polygons);
+  Viewpoint view(soup);
+  view.look_from({{-1.180673222208652, -0.013969143507104653, 0.25915256092418071},
+                  {-0.92106099400288544, -0.17663864968318316, -0.34705249280839123}});
+  EXPECT_LT(view.form_factor({0, piece}).F, 1e-12);
+}
+
 // A tall screen crosses the source's plane above the horizon's other side: what it has in front of the source lies
 // below the receiver's horizon, so that it hides nothing.
 TEST(Viewpoint, OccluderInFrontOnlyBelowTheHorizonHidesNothing) {
