@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "measuring/measured_room.h"
 #include "experiments/csv_table.h"
 #include "experiments/plot_note.h"
 #include "experiments/power_law.h"
+#include "measuring/measured_room.h"
 #include "src/output/plot.h"
 
 namespace exitance {
