@@ -3,7 +3,7 @@
 #include <map>
 
 #include "bench/checked_main.h"
-#include "bench/measured_room.h"
+#include "measuring/measured_room.h"
 
 namespace exitance {
 namespace {

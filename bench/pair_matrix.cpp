@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "bench/checked_main.h"
-#include "bench/measured_room.h"
+#include "measuring/measured_room.h"
 #include "src/form_factor/pair_rows.h"
 #include "src/scene/reader.h"
 

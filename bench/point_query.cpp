@@ -4,7 +4,7 @@
 #include <map>
 
 #include "bench/checked_main.h"
-#include "bench/measured_room.h"
+#include "measuring/measured_room.h"
 
 namespace exitance {
 namespace {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "bench/measured_room.h"
 #include "experiments/csv_table.h"
 #include "experiments/plot_note.h"
 #include "experiments/power_law.h"
+#include "measuring/measured_room.h"
 #include "src/output/plot.h"
 
 namespace exitance {
@@ -121,6 +121,7 @@ std::vector<Way> ways() {
           {"stratified", {.sampler = Sampler::stratified}},
           {"sobol", {.sampler = Sampler::sobol}},
           {"owen", {.sampler = Sampler::owen}},
+          {"sobol offset 2^-22", {.sampler = Sampler::sobol, .offset = 0x1p-22}},
           {"sobol fraction", {.sampler = Sampler::sobol, .estimator = Estimator::fraction}}};
 }
 

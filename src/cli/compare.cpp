@@ -14,6 +14,7 @@
 #include "src/cli/contender_names.h"
 #include "src/cli/given_options.h"
 #include "src/cli/interrupt.h"
+#include "src/cli/memory_limit.h"
 #include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/scene_options.h"
@@ -77,9 +78,7 @@ class Compare {
     verb.add_option("--seed", rays_.seed, "Of rays")->check(whole_number_between(0))->capture_default_str();
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
         ->check(whole_number_between(1, kMostThreads));
-    verb.add_option("--memory-limit", memory_limit_,
-                    "Memory for form factors [GiB]; all that is available unless given")
-        ->check(positive_number());
+    memory_limit_.add_to(verb);
     verb.add_option("-o,--output", file_, "File for the patches of the worst pairs (.vtp)");
     verb.add_flag("--json", json_, "Print the report as JSON");
     verb.footer(
@@ -97,7 +96,7 @@ class Compare {
     const std::vector<Contender> contenders = contenders_named(names_, rays_);
     const Scene scene = scene_.read();
     for (const std::string& warning : scene.warnings) print_warning(warning);
-    const Subject subject(scene, {.patch_size = patch_size_, .memory_limit = available_bytes()});
+    const Subject subject(scene, {.patch_size = patch_size_, .memory_limit = memory_limit_.bytes()});
     refuse_what_does_not_fit(subject.exchange);
     if (!reference_.empty()) reference_record_ = read_solution(reference_);
     describe(subject, threads);
@@ -130,21 +129,11 @@ class Compare {
     report_.warnings = subject.scene.warnings;
   }
 
-  std::uint64_t available_bytes() const {
-    return memory_limit_ ? static_cast<std::uint64_t>(std::min(*memory_limit_ * 0x1p30, 0x1p63))
-                         : available_memory_bytes();
-  }
-
   /// The truth with its classes, and one contender at a time.
   void refuse_what_does_not_fit(const ExchangeScene& exchange) const {
     const std::uint64_t n = exchange.size();
-    const std::uint64_t needed = 2 * pair_rows_bytes(n, expected_pair_density(exchange)) + n * n;
-    const std::uint64_t available = available_bytes();
-    if (needed <= available) return;
-    throw LimitError(
-        fmt::format("the form factors of {} patches would take about {:.3g} GiB of memory and {:.3g} GiB "
-                    "may be used; larger patches need less",
-                    n, static_cast<double>(needed) * 0x1p-30, static_cast<double>(available) * 0x1p-30));
+    exitance::refuse_what_does_not_fit(n, 2 * pair_rows_bytes(n, expected_pair_density(exchange)) + n * n,
+                                       memory_limit_.bytes());
   }
 
   ContenderRun run_one(const Contender& contender, const Subject& subject) const {
@@ -248,7 +237,7 @@ class Compare {
   double patch_size_ = 0;
   std::size_t worst_ = 10;
   std::optional<std::size_t> threads_;
-  std::optional<double> memory_limit_;
+  MemoryLimit memory_limit_;
   std::string reference_, file_;
   bool json_ = false;
 

@@ -16,6 +16,7 @@
 #include "src/cli/formfactor_report.h"
 #include "src/cli/given_options.h"
 #include "src/cli/interrupt.h"
+#include "src/cli/memory_limit.h"
 #include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/scene_options.h"
@@ -43,11 +44,6 @@ constexpr std::uint64_t kSamplePoints = 20'000;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::string size_in_words(std::uint64_t bytes) {
-  const double MiB = static_cast<double>(bytes) * 0x1p-20;
-  return MiB < 1024 ? fmt::format("{:.3g} MiB", MiB) : fmt::format("{:.3g} GiB", MiB / 1024);
 }
 
 /// A scene cut into patches.
@@ -103,9 +99,7 @@ class FormFactor {
         ->capture_default_str();
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
         ->check(whole_number_between(1, kMostThreads));
-    verb.add_option("--memory-limit", memory_limit_,
-                    "Memory for form factors [GiB]; all that is available unless given")
-        ->check(positive_number());
+    memory_limit_.add_to(verb);
     verb.add_option("--save-every", save_every_, "Seconds of work after which finished rows are saved beside FILE")
         ->check(number_between(0))
         ->capture_default_str();
@@ -139,8 +133,7 @@ class FormFactor {
     catch_interrupts();
 
     const Scene scene = scene_.read();
-    report_.available_bytes = memory_limit_ ? static_cast<std::uint64_t>(std::min(*memory_limit_ * 0x1p30, 0x1p63))
-                                            : available_memory_bytes();
+    report_.available_bytes = memory_limit_.bytes();
     const Patches patches(scene, {.patch_size = patch_size_, .memory_limit = report_.available_bytes});
     describe(patches);
     report_.threads = static_cast<unsigned>(threads);
@@ -186,11 +179,7 @@ class FormFactor {
     report_.estimated_bytes = pair_rows_bytes(scene.size(), expected_pair_density(scene));
     fmt::print(stderr, "memory: about {} for the form factors of {} patches, beside {} for the scene\n",
                size_in_words(report_.estimated_bytes), scene.size(), size_in_words(peak_memory_bytes()));
-    if (report_.estimated_bytes <= report_.available_bytes) return;
-    throw LimitError(
-        fmt::format("the form factors of {} patches would take about {} of memory and {} may be used; "
-                    "larger patches need less",
-                    scene.size(), size_in_words(report_.estimated_bytes), size_in_words(report_.available_bytes)));
+    exitance::refuse_what_does_not_fit(scene.size(), report_.estimated_bytes, report_.available_bytes);
   }
 
   /// Everything the rows depend on.
@@ -291,7 +280,7 @@ class FormFactor {
   PairOptions pairs_{.tolerance = 1e-9, .stop = interrupted};
   double patch_size_ = 0, save_every_ = 2;
   std::optional<std::size_t> threads_;
-  std::optional<double> memory_limit_;
+  MemoryLimit memory_limit_;
   std::uint64_t seed_ = 1;
   bool close_rows_ = false, json_ = false;
   std::string file_;

@@ -14,6 +14,7 @@
 #include "src/cli/console.h"
 #include "src/cli/given_options.h"
 #include "src/cli/interrupt.h"
+#include "src/cli/memory_limit.h"
 #include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/scene_options.h"
@@ -79,9 +80,7 @@ class Reference {
         ->capture_default_str();
     verb.add_option("--time-limit", time_limit_, "Seconds after which to end with what there is, exit code 4")
         ->check(positive_number());
-    verb.add_option("--memory-limit", memory_limit_,
-                    "Memory for form factors [GiB]; all that is available unless given")
-        ->check(positive_number());
+    memory_limit_.add_to(verb);
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
         ->check(whole_number_between(1, kMostThreads));
     verb.add_option("--save-every", options_.block_seconds,
@@ -114,8 +113,7 @@ class Reference {
     const Manifest build = build_manifest();
     options_.key = fmt::format("version {}\ncommit {}\ncompiler {}\n", build.version, build.commit, build.compiler);
     options_.checkpoint = file_ + ".parts";
-    options_.memory_limit = memory_limit_ ? static_cast<std::uint64_t>(std::min(*memory_limit_ * 0x1p30, 0x1p63))
-                                          : available_memory_bytes();
+    options_.memory_limit = memory_limit_.bytes();
     options_.stop = [this, start] { return interrupted() || (time_limit_ && seconds_since(start) > *time_limit_); };
     const ReferenceSolution solution = solve(scene, soup, static_cast<unsigned>(threads));
     print(solution, seconds_since(start));
@@ -192,10 +190,8 @@ class Reference {
     const std::string saved =
         fmt::format("{} has the error {:.3g}, not {:.3g}", file_, solution.record.error.total, options_.error);
     if (solution.end == ReferenceEnd::memory) {
-      throw LimitError(fmt::format(
-          "the next level's form factors would take about {:.3g} GiB of memory and {:.3g} GiB may be used; {}",
-          static_cast<double>(solution.bytes_needed) * 0x1p-30, static_cast<double>(options_.memory_limit) * 0x1p-30,
-          saved));
+      throw LimitError(fmt::format("the next level's form factors would take about {} of memory and {} may be used; {}",
+                                   size_in_words(solution.bytes_needed), size_in_words(options_.memory_limit), saved));
     }
     throw LimitError(fmt::format("stopped; {}; the same command goes on", saved));
   }
@@ -203,7 +199,8 @@ class Reference {
   CLI::App& verb_;
   SceneOptions scene_;
   ReferenceOptions options_;
-  std::optional<double> time_limit_, memory_limit_;
+  std::optional<double> time_limit_;
+  MemoryLimit memory_limit_;
   std::optional<std::size_t> threads_;
   std::string file_;
   bool json_ = false;

@@ -13,6 +13,7 @@
 #include "src/cli/console.h"
 #include "src/cli/given_options.h"
 #include "src/cli/interrupt.h"
+#include "src/cli/memory_limit.h"
 #include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/ray_settings.h"
@@ -113,9 +114,7 @@ class Solve {
     verb.add_option("--shots", shots_, "Most shots of --method shoot; what is reached then is saved, exit code 4")
         ->check(whole_number_between(0));
     verb.add_option("--time-limit", time_limit_, "Seconds after which to end likewise")->check(positive_number());
-    verb.add_option("--memory-limit", memory_limit_,
-                    "Memory for form factors [GiB]; all that is available unless given")
-        ->check(positive_number());
+    memory_limit_.add_to(verb);
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
         ->check(whole_number_between(1, kMostThreads));
     verb.add_option("--seed", options_.seed, "Of rays, and of the pairs whose reciprocity is measured")
@@ -177,8 +176,7 @@ class Solve {
     options_.receivers = receivers_ == "area" ? Receivers::area : Receivers::points;
     options_.rays = rays_.chosen(options_.seed);
     options_.max_shots = shots_;
-    options_.memory_limit = memory_limit_ ? static_cast<std::uint64_t>(std::min(*memory_limit_ * 0x1p30, 0x1p63))
-                                          : available_memory_bytes();
+    options_.memory_limit = memory_limit_.bytes();
     options_.stop = [this, start] { return interrupted() || (time_limit_ && seconds_since(start) > *time_limit_); };
     options_.stop_is_a_limit = time_limit_.has_value();
     ProgressDisplay display;
@@ -214,7 +212,8 @@ class Solve {
   RaySettings rays_;
   std::string method_ = "gather", solver_ = "gauss-seidel", receivers_ = "points";
   std::optional<std::uint64_t> shots_;
-  std::optional<double> time_limit_, memory_limit_;
+  std::optional<double> time_limit_;
+  MemoryLimit memory_limit_;
   std::optional<std::size_t> threads_;
   std::string folder_;
   bool json_ = false;

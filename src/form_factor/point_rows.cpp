@@ -6,29 +6,25 @@
 
 #include <algorithm>
 
+#include "src/form_factor/row_blocks.h"
+
 namespace exitance {
 namespace {
 
 using Observers = tbb::enumerable_thread_specific<std::unique_ptr<Observer>>;
 
-/// Makes the row of element(k) for k = 0 … count − 1 and gives each to sink(row), in order.
+constexpr std::size_t kBlock = 256;
+
+/// The row of element(k) for k = 0 … count − 1, given to sink(row) in order.
 template <class ElementOf, class Sink>
-void for_each_row(const MeshVisibility& visibility, std::size_t count, const ElementOf& element,
-                  const Progress& progress, const Sink& sink) {
+void observe(const MeshVisibility& visibility, std::size_t count, const ElementOf& element, const Progress& progress,
+             const Sink& sink) {
   Observers observers([&] { return visibility.observer(); });
-  // Blocks are small enough to report progress between them and large enough to keep all threads busy.
-  constexpr std::size_t kBlock = 256;
-  std::vector<PointRow> rows;
-  for (std::size_t begin = 0; begin < count; begin += kBlock) {
-    const std::size_t end = std::min(count, begin + kBlock);
-    rows.assign(end - begin, {});
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 1), [&](const auto& range) {
-      Observer& observer = *observers.local();
-      for (std::size_t k = range.begin(); k < range.end(); ++k) rows[k - begin] = observer.row(element(k));
-    });
-    for (const auto& row : rows) sink(row);
-    if (progress) progress(static_cast<double>(end) / static_cast<double>(count), "form factors");
-  }
+  for_each_row(
+      count, kBlock, [&](std::size_t k) { return observers.local()->row(element(k)); }, sink,
+      [&](std::size_t done) {
+        if (progress) progress(static_cast<double>(done) / static_cast<double>(count), "form factors");
+      });
 }
 
 }  // namespace
@@ -36,7 +32,7 @@ void for_each_row(const MeshVisibility& visibility, std::size_t count, const Ele
 PointRows point_rows(const MeshVisibility& visibility, std::size_t first, std::size_t last, const Progress& progress) {
   PointRows result;
   result.F.columns = static_cast<std::uint32_t>(visibility.mesh().patches.size());
-  for_each_row(
+  observe(
       visibility, last - first, [&](std::size_t k) { return first + k; }, progress,
       [&](const PointRow& row) {
         result.F.column.insert(result.F.column.end(), row.column.begin(), row.column.end());
@@ -51,7 +47,7 @@ PointRows point_rows(const MeshVisibility& visibility, std::size_t first, std::s
 PointRowStatistics point_row_statistics(const MeshVisibility& visibility, std::span<const std::size_t> elements,
                                         const Progress& progress) {
   PointRowStatistics sum;
-  for_each_row(
+  observe(
       visibility, elements.size(), [&](std::size_t k) { return elements[k]; }, progress,
       [&](const PointRow& row) { sum += row.statistics; });
   return sum;

@@ -1,39 +1,20 @@
 #include "src/form_factor/sampled_area_rows.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "geometry/contour_form_factor.h"
 #include "src/form_factor/area_rows.h"
 #include "src/form_factor/pair_rows.h"
+#include "src/form_factor/row_blocks.h"
 #include "src/visibility/hemisphere_rays.h"
-#include "src/visibility/ray_sampled_visibility.h"
+#include "src/visibility/seed.h"
 #include "src/visibility/shadow_rays.h"
 
 namespace exitance {
 namespace {
 
-constexpr std::size_t kBlock = 32;  // rows between two reports of progress
-constexpr double kBoundOfAny = 1;
-
-/// Rows k = 0 … n − 1 by make(k), in parallel, each given to sink(row) in order. `left`: share of the work after k
-/// rows.
-template <class Make, class Sink, class Left>
-void for_each_row(std::size_t n, const Make& make, const Sink& sink, const Left& left, const Progress& progress) {
-  std::vector<decltype(make(0))> rows;
-  for (std::size_t first = 0; first < n; first += kBlock) {
-    const std::size_t last = std::min(n, first + kBlock);
-    rows.resize(last - first);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, 1), [&](const auto& some) {
-      for (std::size_t k = some.begin(); k < some.end(); ++k) rows[k - first] = make(k);
-    });
-    for (const auto& row : rows) sink(row);
-    if (progress) progress(1 - left(last), "form factors");
-  }
-}
+constexpr std::size_t kBlock = 32;
 
 struct ExchangeRow {
   PairRows pairs;
@@ -53,14 +34,8 @@ class ExchangeRows {
     for (std::size_t j = i; j < scene_.size(); ++j) {
       const SampledFormFactor f = exchange(i, j);
       const std::uint64_t times = i == j ? 1 : 2;
-      if (f.F_unoccluded == 0) {
-        row.statistics.pairs.facing_away += times;
-        continue;
-      }
-      std::uint64_t& kind = f.arrived == f.rays ? row.statistics.pairs.open
-                            : f.arrived == 0    ? row.statistics.pairs.blocked
-                                                : row.statistics.pairs.partial;
-      kind += times;
+      f.count_in(row.statistics.pairs) += times;
+      if (f.F_unoccluded == 0) continue;
       row.statistics.rays += f.rays;
       const double A_i = scene_.area(i), A_j = scene_.area(j);
       if (std::isfinite(f.standard_error)) {
@@ -81,26 +56,18 @@ class ExchangeRows {
 
  private:
   SampledFormFactor exchange(std::size_t i, std::size_t j) const {
-    SampledFormFactor sum;
-    double variance = 0;
+    SampledSum sum;
     std::uint64_t seed = question_seed(rays_.options().seed, i, j);
     const auto a = scene_.pieces(i), b = scene_.pieces(j);
     for (std::size_t k = 0; k < a.size(); ++k) {
       for (std::size_t l = i == j ? k + 1 : 0; l < b.size(); ++l) {
         seed = mixed(seed);
         const double unoccluded = unobstructed_exchange(a[k].radiator, b[l].radiator).integral;
-        const SampledFormFactor f =
-            rays_.exchange(a[k].radiator.facets()[0].loop, b[l].radiator.facets()[0].loop, unoccluded, seed);
-        const double times = i == j ? 2 : 1;  // of a bent element, what goes there and what comes back
-        sum.F += times * f.F;
-        sum.F_unoccluded += times * f.F_unoccluded;
-        sum.rays += f.rays;
-        sum.arrived += f.arrived;
-        variance += times * f.standard_error * times * f.standard_error;
+        // Of a bent element, what goes there and what comes back.
+        sum.add(rays_.exchange(a[k].source, b[l].source, unoccluded, seed), i == j ? 2 : 1);
       }
     }
-    sum.standard_error = std::sqrt(variance);
-    return sum;
+    return sum.value();
   }
 
   ExchangeScene scene_;
@@ -113,16 +80,15 @@ SampledAreaRows by_shadow_rays(const PatchMesh& mesh, const PolygonSoup& soup, E
   SampledAreaRows result;
   PairRows all;
   for_each_row(
-      rows.size(), [&](std::size_t i) { return rows.row(i); },
+      rows.size(), kBlock, [&](std::size_t i) { return rows.row(i); },
       [&](const ExchangeRow& row) {
         append(all, row.pairs);
         result.statistics += row.statistics;
       },
       [&](std::size_t done) {
         const double left = 1 - static_cast<double>(done) / static_cast<double>(rows.size());
-        return left * left;
-      },
-      progress);
+        if (progress) progress(1 - left * left, "form factors");
+      });
   result.F = matrix_of(std::span(&all, 1), static_cast<std::uint32_t>(rows.size()));
   if (unit == ExchangeScene::Unit::element) result.F = sum_to_patches(result.F, mesh);
   return result;
@@ -140,7 +106,8 @@ SampledAreaRows by_hemispheres(const PatchMesh& mesh, const PolygonSoup& soup, E
   SampledAreaRows result;
   result.F.columns = static_cast<std::uint32_t>(mesh.patches.size());
   for_each_row(
-      n, [&](std::size_t k) { return rays.from_area(pieces_of(mesh, unit, k), question_seed(options.seed, k, 0)); },
+      n, kBlock,
+      [&](std::size_t k) { return rays.from_area(pieces_of(mesh, unit, k), question_seed(options.seed, k, 0)); },
       [&](const HemisphereHits& hits) {
         for (const auto& [patch, count] : hits.front) {
           result.F.column.push_back(patch);
@@ -149,12 +116,14 @@ SampledAreaRows by_hemispheres(const PatchMesh& mesh, const PolygonSoup& soup, E
           result.statistics.standard_error_sum += hits.standard_error(count);
         }
         result.F.row_first.push_back(result.F.F.size());
-        result.statistics.rays += hits.rays;
+        result.statistics.rays += hits.rays - hits.covered;
         result.statistics.sampled += hits.front.size();
         result.statistics.pairs.partial += hits.front.size();
         result.statistics.pairs.facing_away += mesh.patches.size() - hits.front.size();
       },
-      [&](std::size_t done) { return 1 - static_cast<double>(done) / static_cast<double>(n); }, progress);
+      [&](std::size_t done) {
+        if (progress) progress(static_cast<double>(done) / static_cast<double>(n), "form factors");
+      });
   return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "src/scene/scene_hash.h"
 #include "src/solve/gather.h"
+#include "src/visibility/visibility.h"
 
 namespace exitance {
 namespace {
@@ -43,7 +44,7 @@ SolutionRecord record_of(const Scene& scene, const SceneSolution& solution) {
 }
 
 SolutionRecord solve_matrix(const Scene& scene, const PolygonSoup& soup, const PatchMesh& mesh, FormFactorMatrix F) {
-  std::ranges::fill(F.F_error, 1.0);  // what bounds any form factor's error, for those of which no better is known
+  std::ranges::fill(F.F_error, kBoundOfAny);  // no better is known of all of them
   const Discretisation d = discretise(scene, mesh);
   RadiositySystem system{d.bands, patch_areas(d), d.rho, d.E, std::move(F)};
   check(system);

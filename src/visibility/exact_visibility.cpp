@@ -10,13 +10,10 @@ namespace {
 /// is below the rounding of 1 is no view.
 constexpr double kSeesNothing = 0x1p-53;
 
-/// The corners of patches are rounded to some 2^-52 of the scene's extent. What lies nearer to a point than this share
-/// of the extent lies in contact with it: seen from so near, patches would leave gaps and overlap.
-constexpr double kInContact = 0x1p-49;
-
 class ExactObserver final : public Observer {
  public:
-  ExactObserver(const PatchMesh& mesh, const PolygonSoup& soup) : mesh_(mesh), soup_(soup), view_(soup) {}
+  ExactObserver(const PatchMesh& mesh, const PolygonSoup& soup, const Contacts& contacts)
+      : mesh_(mesh), soup_(soup), contacts_(contacts), view_(soup) {}
 
   PointRow row(std::size_t element) override {
     PointRow row;
@@ -63,36 +60,7 @@ class ExactObserver final : public Observer {
   bool look_from(std::size_t element) {
     const Element& e = mesh_.elements[element];
     view_.look_from({e.sample, e.normal, e.facet});
-    return !view_.covered() && !is_in_contact(e);
-  }
-
-  /// Whether a facet that faces the point lies against it up to rounding.
-  bool is_in_contact(const Element& e) {
-    const double near = kInContact * soup_.extent();
-    const auto facets = static_cast<std::uint32_t>(soup_.facets().size());
-    Box box;
-    box.extend(e.sample - Vec3{near, near, near});
-    box.extend(e.sample + Vec3{near, near, near});
-    found_.clear();
-    soup_.index().find(box, found_);
-    return std::ranges::any_of(found_, [&](std::uint32_t item) {
-      if (item < facets) return lies_against(item, e, near);
-      return std::ranges::any_of(soup_.shells()[item - facets].facets,
-                                 [&](std::uint32_t f) { return lies_against(f, e, near); });
-    });
-  }
-
-  bool lies_against(std::uint32_t facet, const Element& e, double near) const {
-    const Facet& f = soup_.facets()[facet];
-    const double size = norm(f.plane.normal);
-    if (facet == e.facet || dot(f.plane.normal, e.normal) > -0.5 * size) return false;
-    if (std::fabs(dot(f.plane.normal, e.sample - f.plane.origin)) > near * size) return false;
-    const auto corners = soup_.corners(f);
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      const Vec3 &a = corners[k].at, &b = corners[(k + 1) % corners.size()].at;
-      if (dot(cross(b - a, e.sample - a), f.plane.normal) < 0) return false;
-    }
-    return true;
+    return !view_.covered() && !contacts_.touched(e.facet, e.sample);
   }
 
   /// F to the patch's front, the sum of its pieces'; adds what is seen of its back.
@@ -132,14 +100,14 @@ class ExactObserver final : public Observer {
 
   const PatchMesh& mesh_;
   const PolygonSoup& soup_;
+  const Contacts& contacts_;
   Viewpoint view_;
-  std::vector<std::uint32_t> found_;
 };
 
 }  // namespace
 
 std::unique_ptr<Observer> ExactVisibility::observer() const {
-  return std::make_unique<ExactObserver>(mesh_, soup_);
+  return std::make_unique<ExactObserver>(mesh_, soup_, contacts_);
 }
 
 }  // namespace exitance

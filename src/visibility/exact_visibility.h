@@ -2,6 +2,7 @@
 // Exact visibility of a mesh's patches from its sample points.
 
 #include "geometry/polygon_soup.h"
+#include "src/visibility/contacts.h"
 #include "src/visibility/visibility.h"
 
 namespace exitance {
@@ -13,7 +14,7 @@ inline constexpr double kPointTolerance = 1e-11;
 class ExactVisibility final : public MeshVisibility {
  public:
   /// Keeps references. The mesh must be of the soup's scene (make_patch_mesh).
-  ExactVisibility(const PatchMesh& mesh, const PolygonSoup& soup) : mesh_(mesh), soup_(soup) {}
+  ExactVisibility(const PatchMesh& mesh, const PolygonSoup& soup) : mesh_(mesh), soup_(soup), contacts_(soup) {}
 
   const PatchMesh& mesh() const override { return mesh_; }
   std::unique_ptr<Observer> observer() const override;
@@ -21,6 +22,7 @@ class ExactVisibility final : public MeshVisibility {
  private:
   const PatchMesh& mesh_;
   const PolygonSoup& soup_;
+  Contacts contacts_;
 };
 
 }  // namespace exitance

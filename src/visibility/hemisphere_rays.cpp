@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "src/visibility/fan_map.h"
+#include "src/visibility/seed.h"
 
 namespace exitance {
 namespace {
@@ -42,10 +43,11 @@ struct Ray {
   Vec3 from, direction;
 };
 
-/// A piece of an element, for rays that start from it.
-struct Ground {
-  Ground(const PatchMesh& mesh, const PolygonSoup& soup, const PatchPiece& piece, double offset)
+/// A piece of an element or a patch, for rays that start from it.
+struct StartPiece {
+  StartPiece(const PatchMesh& mesh, const PolygonSoup& soup, const PatchPiece& piece, double offset)
       : frame(normalized(soup.facets()[piece.facet].plane.normal)),
+        facet(piece.facet),
         area(piece.area),
         moved(offset * normalized(soup.facets()[piece.facet].plane.normal)) {
     if (piece.loop_count == 0) {
@@ -57,6 +59,7 @@ struct Ground {
 
   Frame frame;
   ConvexLoop loop;
+  std::uint32_t facet;
   double area;
   Vec3 moved;
 };
@@ -74,7 +77,9 @@ HemisphereRays::HemisphereRays(const PatchMesh& mesh, const PolygonSoup& soup, c
       replicates_((check(options), options.replicates)),
       directions_(options.sampler, options.rays),
       points_and_directions_(options.sampler, options.rays),
-      caster_(mesh, soup, options) {}
+      caster_(mesh, soup, options) {
+  if (options.contacts) contacts_.emplace(soup);
+}
 
 template <std::size_t D, class RayOf>
 HemisphereHits HemisphereRays::count(const SamplePoints<D>& samples, std::uint64_t seed, const RayOf& ray_of) const {
@@ -87,13 +92,16 @@ HemisphereHits HemisphereRays::count(const SamplePoints<D>& samples, std::uint64
   std::vector<std::uint32_t> met;
   for (std::uint32_t replicate = 0; replicate < replicates_; ++replicate) {
     for (std::uint32_t first = 0; first < samples.size(); first += kBatch) {
-      const std::size_t n = std::min(kBatch, samples.size() - first);
-      samples.take(seed + replicate * 0xd1342543de82ef95u, first, {points.data(), n});
-      for (std::size_t k = 0; k < n; ++k) {
-        const Ray ray = ray_of(points[k]);
-        from[k] = ray.from;
-        direction[k] = ray.direction;
+      const std::size_t drawn = std::min(kBatch, samples.size() - first);
+      samples.take(nth_seed(seed, replicate), first, {points.data(), drawn});
+      std::size_t n = 0;
+      for (std::size_t k = 0; k < drawn; ++k) {
+        const std::optional<Ray> ray = ray_of(points[k]);
+        if (!ray) continue;
+        from[n] = ray->from;
+        direction[n++] = ray->direction;
       }
+      result.covered += drawn - n;
       caster_.first_hits({from.data(), n}, {direction.data(), n}, {hits.data(), n});
       for (std::size_t k = 0; k < n; ++k) {
         result.missed += hits[k].side == RayHit::Side::none;
@@ -112,25 +120,31 @@ HemisphereHits HemisphereRays::count(const SamplePoints<D>& samples, std::uint64
 HemisphereHits HemisphereRays::from_point(const Element& element, std::uint64_t seed) const {
   const Frame frame(element.normal);
   const Vec3 from = element.sample + caster_.offset() * element.normal;
-  return count(directions_, seed, [&](const auto& p) { return Ray{from, frame.direction(p[0], p[1])}; });
+  const bool covered = contacts_ && contacts_->covered(element.facet, element.sample);
+  return count(directions_, seed, [&](const auto& p) -> std::optional<Ray> {
+    if (covered) return {};
+    return Ray{from, frame.direction(p[0], p[1])};
+  });
 }
 
 HemisphereHits HemisphereRays::from_area(std::span<const PatchPiece> pieces, std::uint64_t seed) const {
-  std::vector<Ground> grounds;
+  std::vector<StartPiece> starts;
   std::vector<FanMap> maps;
   double area = 0;
   for (const PatchPiece& piece : pieces) {
-    grounds.emplace_back(mesh_, soup_, piece, caster_.offset());
+    starts.emplace_back(mesh_, soup_, piece, caster_.offset());
     area += piece.area;
   }
-  for (const Ground& ground : grounds) maps.emplace_back(ground.loop);
-  return count(points_and_directions_, seed, [&](const auto& p) {
+  for (const StartPiece& start : starts) maps.emplace_back(start.loop);
+  return count(points_and_directions_, seed, [&](const auto& p) -> std::optional<Ray> {
     // The first coordinate chooses the piece, too.
     std::size_t k = 0;
     double along = p[0] * area;
-    while (k + 1 < grounds.size() && along > grounds[k].area) along -= grounds[k++].area;
-    const Ground& ground = grounds[k];
-    return Ray{maps[k](std::min(along / ground.area, 1.0), p[1]) + ground.moved, ground.frame.direction(p[2], p[3])};
+    while (k + 1 < starts.size() && along > starts[k].area) along -= starts[k++].area;
+    const StartPiece& start = starts[k];
+    const Vec3 at = maps[k](std::min(along / start.area, 1.0), p[1]);
+    if (contacts_ && contacts_->covered(start.facet, at)) return {};
+    return Ray{at + start.moved, start.frame.direction(p[2], p[3])};
   });
 }
 

@@ -2,12 +2,14 @@
 // All that an element sees at once, by rays as dense as cosθ / π around its normal.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "geometry/polygon_soup.h"
 #include "src/scene/patch_mesh.h"
+#include "src/visibility/contacts.h"
 #include "src/visibility/ray_caster.h"
 #include "src/visibility/ray_options.h"
 #include "src/visibility/sample_points.h"
@@ -16,8 +18,9 @@ namespace exitance {
 
 struct HemisphereHits {
   std::vector<std::pair<std::uint32_t, std::uint64_t>> front;  ///< patch and hits of its front, ascending
-  std::uint64_t missed = 0;  ///< rays that met nothing: of a closed scene, they leaked
-  std::uint64_t rays = 0;
+  std::uint64_t missed = 0;   ///< rays that met nothing: of a closed scene, they leaked
+  std::uint64_t covered = 0;  ///< that were not cast, as something lies on the point where they start
+  std::uint64_t rays = 0;     ///< all of them
 
   /// The share that met the patch's front, and its standard error as of independent rays: too much for points that are
   /// spread evenly.
@@ -25,6 +28,7 @@ struct HemisphereHits {
   double standard_error(std::uint64_t hits) const;
 };
 
+/// Which of two surfaces in one plane a ray meets first is left to chance.
 class HemisphereRays {
  public:
   /// Keeps a reference to the mesh. Throws std::invalid_argument on options out of range, std::runtime_error when
@@ -45,6 +49,7 @@ class HemisphereRays {
   SamplePoints<2> directions_;
   SamplePoints<4> points_and_directions_;
   RayCaster caster_;
+  std::optional<Contacts> contacts_;
 };
 
 }  // namespace exitance

@@ -36,6 +36,9 @@ struct RayOptions {
   /// of it, and F errs in proportion to it. The default is 16 roundings of a coordinate; with four, some rays still hit
   /// their own surfaces.
   double offset = 0x1p-20;
+  /// Whether rays are told which points lie in contacts (Contacts). If not, those that start and end within one solid,
+  /// beyond the surfaces that touch, find nothing between, however many they are.
+  bool contacts = true;
   std::uint64_t seed = 1;  ///< of all questions about a scene; each draws its own from it
 };
 

@@ -5,13 +5,11 @@
 #include <optional>
 
 #include "src/visibility/hemisphere_rays.h"
+#include "src/visibility/seed.h"
 #include "src/visibility/shadow_rays.h"
 
 namespace exitance {
 namespace {
-
-/// No form factor is off by more.
-constexpr double kBoundOfAny = 1;
 
 class ShadowRayObserver final : public Observer {
  public:
@@ -20,17 +18,15 @@ class ShadowRayObserver final : public Observer {
 
   PointRow row(std::size_t element) override {
     PointRow row;
+    if (is_covered(element)) {
+      row.statistics.covered_points = 1;
+      return row;
+    }
     double sum = 0;
     for (std::uint32_t p = 0; p < mesh_.patches.size(); ++p) {
       const SampledFormFactor f = to_patch(element, p);
-      if (f.F_unoccluded == 0) {
-        ++row.statistics.pairs.facing_away;
-        continue;
-      }
-      std::uint64_t& kind = f.arrived == f.rays ? row.statistics.pairs.open
-                            : f.arrived == 0    ? row.statistics.pairs.blocked
-                                                : row.statistics.pairs.partial;
-      ++kind;
+      ++f.count_in(row.statistics.pairs);
+      if (f.F_unoccluded == 0) continue;
       row.statistics.rays += f.rays;
       if (std::isfinite(f.standard_error)) {
         ++row.statistics.sampled;
@@ -50,31 +46,30 @@ class ShadowRayObserver final : public Observer {
   }
 
   PointFormFactor entry(std::size_t element, std::size_t patch) override {
+    if (is_covered(element)) return {};
     const SampledFormFactor f = to_patch(element, static_cast<std::uint32_t>(patch));
     return {.F = f.F, .error = f.F_unoccluded > 0 ? kBoundOfAny : 0, .side = Side::front};
   }
 
  private:
+  Receiver receiver(std::size_t element) const {
+    const Element& e = mesh_.elements[element];
+    return {e.sample, e.normal, e.facet};
+  }
+  bool is_covered(std::size_t element) const { return rays_.covered(receiver(element)); }
+
   /// The sum of the patch's pieces that turn their front to the sample point.
   SampledFormFactor to_patch(std::size_t element, std::uint32_t patch) const {
     const Element& e = mesh_.elements[element];
-    SampledFormFactor sum;
-    double variance = 0;
+    SampledSum sum;
     std::uint64_t seed = question_seed(rays_.options().seed, element, patch);
     for (const PatchPiece& piece : mesh_.pieces_of(mesh_.patches[patch])) {
       seed = mixed(seed);
       const Plane& plane = soup_.facets()[piece.facet].plane;
       if (piece.facet == e.facet || !(dot(plane.normal, e.sample - plane.origin) > 0)) continue;
-      const SampledFormFactor f =
-          rays_.form_factor({e.sample, e.normal, e.facet}, {piece.facet, mesh_.loop(piece)}, seed);
-      sum.F += f.F;
-      sum.F_unoccluded += f.F_unoccluded;
-      sum.rays += f.rays;
-      sum.arrived += f.arrived;
-      variance += f.standard_error * f.standard_error;
+      sum.add(rays_.form_factor(receiver(element), {piece.facet, mesh_.loop(piece)}, seed));
     }
-    sum.standard_error = std::sqrt(variance);
-    return sum;
+    return sum.value();
   }
 
   const PatchMesh& mesh_;
@@ -96,7 +91,7 @@ class HemisphereObserver final : public Observer {
       row.F_error.push_back(kBoundOfAny);
       row.statistics.standard_error_sum += hits.standard_error(count);
     }
-    row.statistics.rays = hits.rays;
+    row.statistics.rays = hits.rays - hits.covered;
     row.statistics.sampled = row.statistics.pairs.partial = hits.front.size();
     row.statistics.pairs.facing_away = mesh_.patches.size() - hits.front.size();
     if (hits.front.empty()) {
@@ -148,10 +143,6 @@ RaySampledVisibility::~RaySampledVisibility() = default;
 std::unique_ptr<Observer> RaySampledVisibility::observer() const {
   if (rays_->hemisphere) return std::make_unique<HemisphereObserver>(mesh_, *rays_->hemisphere, rays_->seed);
   return std::make_unique<ShadowRayObserver>(mesh_, soup_, *rays_->shadow);
-}
-
-std::uint64_t question_seed(std::uint64_t seed, std::uint64_t receiver, std::uint64_t source) {
-  return mixed(mixed(mixed(seed) ^ receiver) ^ source);
 }
 
 }  // namespace exitance

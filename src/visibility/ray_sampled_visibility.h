@@ -29,7 +29,4 @@ class RaySampledVisibility final : public MeshVisibility {
   std::unique_ptr<Rays> rays_;
 };
 
-/// The seed of one question of many.
-std::uint64_t question_seed(std::uint64_t seed, std::uint64_t receiver, std::uint64_t source);
-
 }  // namespace exitance

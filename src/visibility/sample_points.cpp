@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <boost/random/sobol.hpp>
 
+#include "src/visibility/seed.h"
+
 namespace exitance {
 namespace {
 
@@ -12,7 +14,7 @@ double in_unit_interval(std::uint32_t digits) {
 
 /// Two coordinates' digits, for each index others; the seed is white already.
 std::array<std::uint32_t, 2> random_digits(std::uint64_t seed, std::uint64_t index) {
-  const std::uint64_t bits = mixed(seed + index * 0xd1342543de82ef95u);
+  const std::uint64_t bits = mixed(nth_seed(seed, index));
   return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
 }
 

@@ -19,14 +19,6 @@ enum class Sampler : std::uint8_t {
 
 std::string to_string(Sampler sampler);
 
-/// Whitens a number (the output function of SplitMix64; Steele, Lea and Flood 2014).
-constexpr std::uint64_t mixed(std::uint64_t z) {
-  z += 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
 /// A fixed number of points for every seed. D is 2 or 4. Any number of threads may ask at once.
 template <std::size_t D>
 class SamplePoints {

@@ -2,10 +2,13 @@
 // Form factors to one source by rays between the two: what exact visibility is compared with.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "geometry/viewpoint.h"
+#include "src/visibility/contacts.h"
+#include "src/visibility/pair_counts.h"
 #include "src/visibility/ray_caster.h"
 #include "src/visibility/ray_options.h"
 #include "src/visibility/sample_points.h"
@@ -21,6 +24,20 @@ struct SampledFormFactor {
   double F_unoccluded = 0;    ///< what it would be without occluders, by Lambert's formula
   std::uint64_t rays = 0;     ///< that were cast
   std::uint64_t arrived = 0;  ///< of them
+
+  /// The pair's class, as the rays tell.
+  std::uint64_t& count_in(PairCounts& pairs) const;
+};
+
+/// The same of several pieces whose rays are independent.
+class SampledSum {
+ public:
+  void add(const SampledFormFactor& f, double times = 1);
+  SampledFormFactor value() const;
+
+ private:
+  SampledFormFactor sum_;
+  double variance_ = 0;
 };
 
 /// Any number of threads may ask at once.
@@ -30,16 +47,18 @@ class ShadowRays {
   /// Estimator::hemisphere, which asks for no single source, std::runtime_error when Embree fails.
   ShadowRays(const PolygonSoup& soup, const RayOptions& options);
 
+  /// Whether something lies on the receiver, which then sees nothing. Rays do not find out: form_factor has no meaning
+  /// there. Always false for a receiver on no facet and without RayOptions::contacts.
+  bool covered(const Receiver& receiver) const;
+
   /// F from the receiver to the visible part of the source, from whichever side it is seen, with the source clipped at
   /// the receiver's horizon, by the estimator asked for. The points on the source are drawn from `seed`: give each
-  /// question its own. Unlike exact visibility it knows no surface by identity: what lies in the plane of receiver or
-  /// source covers nothing.
+  /// question its own.
   SampledFormFactor form_factor(const Receiver& receiver, const Source& source, std::uint64_t seed) const;
 
   /// A_i F_ij = A_j F_ji of two convex, planar polygons, each clipped by the other's plane: rays between points spread
   /// over both. `unoccluded`: what it would be without occluders. Loops run counter-clockwise seen from the front.
-  SampledFormFactor exchange(std::span<const Vec3> loop_i, std::span<const Vec3> loop_j, double unoccluded,
-                             std::uint64_t seed) const;
+  SampledFormFactor exchange(const Source& i, const Source& j, double unoccluded, std::uint64_t seed) const;
 
   /// Where form_factor would cast its first replicate's rays from and to: for measuring rays alone.
   struct Rays {
@@ -56,11 +75,16 @@ class ShadowRays {
   const RayOptions& options() const { return options_; }
 
  private:
+  template <std::size_t D, class RayOf, class Cast>
+  SampledFormFactor sample(const SamplePoints<D>& samples, double unoccluded, std::uint64_t seed, const RayOf& ray_of,
+                           const Cast& cast) const;
+
   const PolygonSoup* soup_;
   RayOptions options_;
   SamplePoints<2> on_source_;
   SamplePoints<4> on_both_;
   RayCaster caster_;
+  std::optional<Contacts> contacts_;
 };
 
 }  // namespace exitance

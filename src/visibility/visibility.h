@@ -12,6 +12,9 @@
 
 namespace exitance {
 
+/// No form factor is off by more: all that rays prove.
+inline constexpr double kBoundOfAny = 1;
+
 struct PointRowStatistics {
   PairCounts pairs;
   StageCounts stages;          ///< of exact predicates
@@ -33,7 +36,7 @@ struct PointRowStatistics {
 struct PointRow {
   std::vector<std::uint32_t> column;
   std::vector<double> F;
-  /// Bound of |F − true F|. Rays prove nothing: 1, which no form factor misses by more.
+  /// Bound of |F − true F|; kBoundOfAny by rays.
   std::vector<double> F_error;
   PointRowStatistics statistics;
 };

@@ -295,10 +295,27 @@ TEST(PointRows, SamplePointsKeepAwayFromEdgesOfOtherSurfaces) {
     for (Surface& surface : scene.surfaces) {
       for (Vec3& v : surface.polygon.outer) v = turned(v, axis, turn ? angle : 0) + Vec3{far_off, far_off, 0};
     }
-    const PointRows all = Rows(scene, {.patch_size = 1}).all();
-    EXPECT_LT(all.statistics.closure_max_defect, far_off > 0 ? 1e-10 : 1e-12) << turn;
-    const std::vector<double> sums = row_sums(all.F);
-    EXPECT_LT(std::ranges::max(sums), 1 + 1e-10) << turn;
+    const Rows rows(scene, {.patch_size = 1});
+    // A part of one sheet stands out of the room, where nothing closes what is seen.
+    const auto is_inside = [&](const Element& e) {
+      for (std::uint32_t wall = 0; wall < rows.soup.first_facet(6); ++wall) {
+        const Plane& plane = rows.soup.facets()[wall].plane;
+        if (dot(plane.normal, e.sample - plane.origin) < -1e-6) return false;
+      }
+      return true;
+    };
+    std::size_t outside = 0;
+    for (std::size_t e = 0; e < rows.mesh.elements.size(); ++e) {
+      const PointRows row = rows.some(e, e + 1);
+      EXPECT_LT(row_sums(row.F)[0], 1 + 1e-10) << turn;
+      if (is_inside(rows.mesh.elements[e])) {
+        EXPECT_LT(row.statistics.closure_max_defect, far_off > 0 ? 1e-10 : 1e-12) << turn;
+      } else {
+        ++outside;
+      }
+    }
+    EXPECT_GT(outside, 0u);
+    EXPECT_LT(outside, 10u);
   }
 }
 

@@ -174,18 +174,18 @@ TEST(ShadowRays, ExchangesBetweenPolygonsAgreeWithShapiro) {
   const std::vector<Polygon> polygons{ceiling(0, 1, 0, 1, 1), flipped(ceiling(0, 1, 0, 1, 0)),
                                       ceiling(0.25, 0.75, 0.25, 0.75, 0.75)};
   const PolygonSoup soup(polygons);
-  const auto &upper = polygons[0].outer, &lower = polygons[1].outer;
+  const Source kUpper{0, {}}, kLower{1, {}};
   constexpr double kUnoccluded = 0.19982489569838746;  // parallel unit squares at unit distance (Howell's C-11)
   for (const Sampler sampler : {Sampler::random, Sampler::stratified, Sampler::sobol, Sampler::owen}) {
     const ShadowRays rays(soup, {.rays = 4096, .replicates = 16, .sampler = sampler});
-    const SampledFormFactor f = rays.exchange(lower, upper, kUnoccluded, 3);
+    const SampledFormFactor f = rays.exchange(kLower, kUpper, kUnoccluded, 3);
     EXPECT_NEAR(f.F, kShapiro, 4 * f.standard_error + 2e-6) << to_string(sampler);
     EXPECT_LT(f.standard_error, 1e-3);
     EXPECT_GT(f.standard_error, 0);
-    EXPECT_NEAR(rays.exchange(upper, lower, kUnoccluded, 3).F, kShapiro, 4 * f.standard_error + 2e-6);
+    EXPECT_NEAR(rays.exchange(kUpper, kLower, kUnoccluded, 3).F, kShapiro, 4 * f.standard_error + 2e-6);
   }
-  EXPECT_EQ(ShadowRays(soup, {.estimator = Estimator::centre}).exchange(lower, upper, kUnoccluded, 1).F, 0);
-  EXPECT_EQ(ShadowRays(soup, {}).exchange(upper, polygons[2].outer, 1, 1).F, 0) << "the same way up";
+  EXPECT_EQ(ShadowRays(soup, {.estimator = Estimator::centre}).exchange(kLower, kUpper, kUnoccluded, 1).F, 0);
+  EXPECT_EQ(ShadowRays(soup, {}).exchange(kUpper, {2, {}}, 1, 1).F, 0) << "the same way up";
 }
 
 TEST(ShadowRays, HalfIsHidden) {

@@ -1,5 +1,5 @@
 #pragma once
-// What the benchmarks measure in: furnished rooms, points in them, and whole hemispheres seen from there.
+// What benchmarks and experiments measure in: furnished rooms, points in them, and whole hemispheres seen from there.
 
 #include <fmt/format.h>
 #include <time.h>
@@ -16,6 +16,7 @@
 #include "geometry/viewpoint.h"
 #include "src/scene/furnished_room.h"
 #include "src/scene/patch_mesh.h"
+#include "src/visibility/contacts.h"
 #include "src/visibility/exact_visibility.h"
 #include "src/visibility/shadow_rays.h"
 
@@ -31,13 +32,14 @@ inline std::size_t below(std::mt19937_64& random, std::size_t n) {
 
 struct MeasuredRoom {
   explicit MeasuredRoom(Scene s)
-      : scene(std::move(s)), soup(make_soup(scene)), mesh(make_patch_mesh(scene, soup, {})) {}
+      : scene(std::move(s)), soup(make_soup(scene)), mesh(make_patch_mesh(scene, soup, {})), contacts(soup) {}
 
   std::uint32_t facets() const { return static_cast<std::uint32_t>(soup.facets().size()); }
 
   Scene scene;
   PolygonSoup soup;
   PatchMesh mesh;
+  Contacts contacts;
 };
 
 /// A furnished room of so many polygons, always the same.
@@ -65,25 +67,11 @@ inline Receiver receiver_at(const Element& e) {
   return {e.sample, e.normal, e.facet};
 }
 
-/// Whether an element's sample point lies within, or on the edge of, a facet that faces against its own in the same
-/// plane: buried in a contact, it sees nothing of the room.
-inline bool in_contact(const MeasuredRoom& room, const Element& e) {
-  const auto within = [&](std::uint32_t t) {
-    const auto loop = room.soup.corners(room.soup.facets()[t]);
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      const Vec3 a = room.soup.vertices()[loop[k].vertex], b = room.soup.vertices()[loop[(k + 1) % loop.size()].vertex];
-      if (dot(e.normal, cross(b - a, e.sample - a)) > 1e-12 * norm(b - a)) return false;
-    }
-    return true;
-  };
-  return std::ranges::any_of(room.soup.coplanar(e.facet), within);
-}
-
 /// A sample point, each element's as likely as another's, that no contact buries.
 inline const Element& random_element(const MeasuredRoom& room, std::mt19937_64& random) {
   for (;;) {
     const Element& e = room.mesh.elements[below(random, room.mesh.elements.size())];
-    if (!in_contact(room, e)) return e;
+    if (!room.contacts.covered(e.facet, e.sample)) return e;
   }
 }
 

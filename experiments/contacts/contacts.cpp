@@ -1,0 +1,109 @@
+// Do rows by rays approach the exact ones where furniture touches floor, walls and each other?
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/csv_table.h"
+#include "experiments/plot_note.h"
+#include "experiments/power_law.h"
+#include "src/form_factor/point_rows.h"
+#include "src/output/plot.h"
+#include "src/scene/furnished_room.h"
+#include "src/visibility/exact_visibility.h"
+#include "src/visibility/ray_sampled_visibility.h"
+
+namespace exitance {
+namespace {
+
+struct Way {
+  std::string name;
+  RayOptions options;
+};
+
+std::vector<Way> ways() {
+  const RayOptions kernel, hemisphere{.sampler = Sampler::owen, .estimator = Estimator::hemisphere};
+  std::vector<Way> all{{"kernel", kernel}, {"hemisphere", hemisphere}};
+  for (Way untold : std::vector(all)) {
+    untold.options.contacts = false;
+    all.push_back({untold.name + " untold", untold.options});
+  }
+  return all;
+}
+
+/// Root mean square of all entries' differences, of the rows that exact visibility finds covered and of the others.
+struct Apart {
+  double covered = 0, open = 0;
+};
+
+Apart apart(const PointRows& exact, const PointRows& sampled) {
+  Apart sums;
+  std::vector<double> difference(exact.F.columns);
+  for (std::size_t i = 0; i < exact.F.rows(); ++i) {
+    std::ranges::fill(difference, 0);
+    for (std::size_t k = 0; k < exact.F.row(i).size(); ++k) difference[exact.F.row_columns(i)[k]] = exact.F.row(i)[k];
+    for (std::size_t k = 0; k < sampled.F.row(i).size(); ++k)
+      difference[sampled.F.row_columns(i)[k]] -= sampled.F.row(i)[k];
+    double& sum = exact.F.row(i).empty() ? sums.covered : sums.open;
+    for (const double d : difference) sum += d * d;
+  }
+  const double entries = static_cast<double>(exact.F.rows()) * exact.F.columns;
+  return {std::sqrt(sums.covered / entries), std::sqrt(sums.open / entries)};
+}
+
+void answer(std::uint32_t polygons, std::uint32_t most_rays, CsvTable& table, Plot& plot) {
+  const Scene scene = make_furnished_room(polygons, 1);
+  const PolygonSoup soup = make_soup(scene);
+  const PatchMesh mesh = make_patch_mesh(scene, soup, {});
+  const PointRows exact = point_rows(ExactVisibility(mesh, soup), 0, mesh.elements.size());
+  for (const Way& way : ways()) {
+    Curve curve;
+    RayOptions options = way.options;
+    for (options.rays = 16; options.rays <= most_rays; options.rays *= 4) {
+      const PointRows sampled = point_rows(RaySampledVisibility(mesh, soup, options), 0, mesh.elements.size());
+      const Apart errors = apart(exact, sampled);
+      const double all = std::hypot(errors.covered, errors.open);
+      table.rows.push_back({fmt::format("{}", polygons), way.name, fmt::format("{}", options.rays),
+                            fmt::format("{}", mesh.elements.size()), fmt::format("{}", exact.statistics.covered_points),
+                            digits(all), digits(errors.covered), digits(errors.open)});
+      curve.emplace_back(options.rays, all);
+      fmt::print(stderr, "{}, {} {}: {:.3g}\n", polygons, way.name, options.rays, all);
+    }
+    plot.series.push_back({fmt::format("{} (N^{:.2f})", way.name, slope(curve)), curve});
+  }
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Rows of furnished rooms by rays that are told of contacts and by rays that are not"};
+  std::string out, expected;
+  bool reduced = false;
+  app.add_option("-o,--output", out, "Folder for results.csv and plot.svg");
+  app.add_flag("--reduced", reduced, "The smaller room, few rays");
+  app.add_option("--check", expected, "Compare errors with this table; exit code 1 where they differ");
+  CLI11_PARSE(app, argc, argv);
+  CsvTable table{
+      {"polygons", "rays_of", "rays", "points", "covered_points", "rms_error", "rms_of_covered", "rms_of_others"}, {}};
+  Plot plot{"Rows of a furnished room of 500 polygons", "rays", "rms error of form factors"};
+  plot.note = plot_note();
+  answer(reduced ? 100 : 500, reduced ? 256 : 4096, table, plot);
+  if (!out.empty()) {
+    std::filesystem::create_directories(out);
+    table.write(std::filesystem::path(out) / "results.csv");
+    write_plot(std::filesystem::path(out) / "plot.svg", plot);
+  }
+  if (expected.empty()) return 0;
+  const std::vector<std::string> wrong = differences(table, CsvTable::read(expected), 3, 0.1, {});
+  for (const std::string& line : wrong) fmt::print(stderr, "{}\n", line);
+  return wrong.empty() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace exitance
+
+int main(int argc, char** argv) {
+  return exitance::run(argc, argv);
+}

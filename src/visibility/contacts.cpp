@@ -1,0 +1,126 @@
+#include "src/visibility/contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace exitance {
+namespace {
+
+constexpr double kNear = 0x1p-49;  // of the extent
+constexpr double kOfComputed = 8;  // times that, for points that were computed and not given
+
+bool face_against(const Plane& a, const Plane& b) {
+  return dot(a.normal, b.normal) < -0.5 * norm(a.normal) * norm(b.normal);
+}
+
+}  // namespace
+
+Contacts::Contacts(const PolygonSoup& soup)
+    : soup_(&soup),
+      near_(kNear * soup.extent()),
+      touching_(soup.facets().size()),
+      burying_(soup.facets().size()),
+      overlying_(soup.facets().size()) {
+  const auto facets = soup.facets();
+  const auto count = static_cast<std::uint32_t>(facets.size());
+  const Vec3 margin{near_, near_, near_};
+  std::vector<std::uint32_t> items, near;
+  for (std::uint32_t f = 0; f < count; ++f) {
+    const Plane& plane = facets[f].plane;
+    const auto coplanar = soup.coplanar(f);
+    for (const std::uint32_t t : coplanar) {
+      if (!soup.covers(t, f)) continue;
+      const bool of_solid = soup.role(facets[t].polygon) != Role::sheet && face_against(facets[t].plane, plane);
+      (of_solid ? burying_ : overlying_)[f].push_back(t);
+    }
+    Box around;
+    for (const Corner& c : soup.corners(facets[f])) {
+      around.extend(c.at - margin);
+      around.extend(c.at + margin);
+    }
+    items.clear();
+    near.clear();
+    soup.index().find(around, items);
+    for (const std::uint32_t item : items) {
+      if (item < count) {
+        near.push_back(item);
+      } else {
+        const auto& of_shell = soup.shells()[item - count].facets;
+        near.insert(near.end(), of_shell.begin(), of_shell.end());
+      }
+    }
+    std::ranges::sort(near);
+    for (const std::uint32_t t : near) {
+      if (face_against(facets[t].plane, plane) && reaches(t, plane) && !std::ranges::binary_search(coplanar, t) &&
+          !are_sides_of_a_sheet(facets[t].polygon, facets[f].polygon))
+        touching_[f].push_back(t);
+    }
+  }
+}
+
+bool Contacts::touched(std::uint32_t facet, const Vec3& point) const {
+  return any_at(touching_[facet], point, near_);
+}
+
+bool Contacts::buried(std::uint32_t facet, const Vec3& point) const {
+  return any_at(burying_[facet], point, kOfComputed * near_) || any_at(touching_[facet], point, kOfComputed * near_);
+}
+
+bool Contacts::overlaid(std::uint32_t facet, const Vec3& point) const {
+  return any_at(overlying_[facet], point, kOfComputed * near_);
+}
+
+Contacts::Pair Contacts::pair(std::uint32_t i, std::uint32_t j) const {
+  Pair pair;
+  pair.contacts_ = this;
+  pair.i_ = i;
+  pair.j_ = j;
+  pair.overlying_ = may_be_overlaid(i) || may_be_overlaid(j);
+  pair.burying_ = burying_count(i) > 0 && burying_count(j) > 0;
+  return pair;
+}
+
+bool Contacts::Pair::cover(const Vec3& point_i, const Vec3& point_j) const {
+  if (overlying_ && (contacts_->overlaid(i_, point_i) || contacts_->overlaid(j_, point_j))) return true;
+  if (!burying_) return false;
+  return contacts_->burying_count(i_) <= contacts_->burying_count(j_) ? contacts_->buried(i_, point_i)
+                                                                      : contacts_->buried(j_, point_j);
+}
+
+bool Contacts::any_at(std::span<const std::uint32_t> facets, const Vec3& point, double near) const {
+  return std::ranges::any_of(facets, [&](std::uint32_t facet) {
+    const Facet& f = soup_->facets()[facet];
+    if (std::fabs(dot(f.plane.normal, point - f.plane.origin)) > near * norm(f.plane.normal)) return false;
+    const auto corners = soup_->corners(f);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Vec3 &a = corners[k].at, &b = corners[(k + 1) % corners.size()].at;
+      if (dot(cross(b - a, point - a), f.plane.normal) < 0) return false;
+    }
+    return true;
+  });
+}
+
+/// Facets of the two that lie exactly in one plane do not cover each other: then nor do those that do but for rounding.
+bool Contacts::are_sides_of_a_sheet(std::uint32_t p, std::uint32_t q) const {
+  for (std::uint32_t f = soup_->first_facet(q); f < soup_->first_facet(q + 1); ++f) {
+    for (const std::uint32_t t : soup_->coplanar(f)) {
+      const auto facets = soup_->facets();
+      if (facets[t].polygon == p && face_against(facets[t].plane, facets[f].plane) && !soup_->covers(t, f)) return true;
+    }
+  }
+  return p == q;
+}
+
+/// Whether some of the facet lies in the plane, or nearly.
+bool Contacts::reaches(std::uint32_t facet, const Plane& plane) const {
+  const double limit = 2 * kOfComputed * near_ * norm(plane.normal);
+  bool before = false, behind = false;
+  for (const Corner& c : soup_->corners(soup_->facets()[facet])) {
+    const double height = dot(plane.normal, c.at - plane.origin);
+    before = before || height >= -limit;
+    behind = behind || height <= limit;
+  }
+  return before && behind;
+}
+
+}  // namespace exitance

@@ -1,0 +1,61 @@
+#pragma once
+// What lies on the facets of a scene and hides their points from whatever looks at them, however it looks.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/polygon_soup.h"
+
+namespace exitance {
+
+/// Rays start and end a little off their surfaces, and so beyond what lies on them: from within a solid that stands on
+/// the floor, say, to within the same. They are told what lies where; exact visibility is told only what does so up to
+/// rounding, as it knows the rest. Any number of threads may ask at once.
+class Contacts {
+ public:
+  /// Keeps a reference to the soup.
+  explicit Contacts(const PolygonSoup& soup);
+
+  /// Whether something that faces the facet lies against it at this point of it up to rounding, but not exactly: within
+  /// 2^-49 of the scene's extent, as contacts of turned solids do. The corners of patches are rounded to some 2^-52 of
+  /// it; seen from so near, patches would leave gaps and overlap. On an edge of what lies there: yes.
+  bool touched(std::uint32_t facet, const Vec3& point) const;
+
+  /// Whether anything lies on the facet at this point of it, computed with some roundings; on its edges, too.
+  bool covered(std::uint32_t facet, const Vec3& point) const { return buried(facet, point) || overlaid(facet, point); }
+  /// Whether something does with open space before it: a later surface that faces the same way, or a sheet.
+  bool overlaid(std::uint32_t facet, const Vec3& point) const;
+  bool may_be_overlaid(std::uint32_t facet) const { return !overlying_[facet].empty(); }
+
+  /// The contacts of two facets, between points of which nothing else stands.
+  class Pair {
+   public:
+    Pair() = default;
+    bool exist() const { return overlying_ || burying_; }
+    /// Whether one of the points (or both) is covered. Two that lie in solids lie in the same, or something would stand
+    /// between: the facet with fewer contacts is asked.
+    bool cover(const Vec3& point_i, const Vec3& point_j) const;
+
+   private:
+    friend class Contacts;
+    const Contacts* contacts_ = nullptr;
+    std::uint32_t i_ = 0, j_ = 0;
+    bool overlying_ = false, burying_ = false;
+  };
+  Pair pair(std::uint32_t i, std::uint32_t j) const;
+
+ private:
+  bool buried(std::uint32_t facet, const Vec3& point) const;
+  std::size_t burying_count(std::uint32_t facet) const { return burying_[facet].size() + touching_[facet].size(); }
+  bool any_at(std::span<const std::uint32_t> facets, const Vec3& point, double near) const;
+  bool are_sides_of_a_sheet(std::uint32_t p, std::uint32_t q) const;  ///< polygons
+  bool reaches(std::uint32_t facet, const Plane& plane) const;
+
+  const PolygonSoup* soup_;
+  double near_;  ///< [m]
+  /// The facets that lie on each facet: against it up to rounding; exactly, solids; exactly, others.
+  std::vector<std::vector<std::uint32_t>> touching_, burying_, overlying_;
+};
+
+}  // namespace exitance

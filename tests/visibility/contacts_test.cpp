@@ -1,0 +1,183 @@
+// Surfaces that lie on each other: what exact visibility sees of them, and that rays which are told of contacts agree.
+
+#include "src/visibility/contacts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/form_factor/area_rows.h"
+#include "src/form_factor/point_rows.h"
+#include "src/form_factor/sampled_area_rows.h"
+#include "src/scene/furnished_room.h"
+#include "src/visibility/exact_visibility.h"
+#include "src/visibility/ray_sampled_visibility.h"
+
+namespace exitance {
+namespace {
+
+struct Placement {
+  double angle = 0;  ///< about two axes, so that coordinates are rounded
+  Vec3 operator()(const Vec3& v) const {
+    const double c = std::cos(angle), s = std::sin(angle);
+    const Vec3 w{c * v.x - s * v.y, s * v.x + c * v.y, v.z};
+    return {w.x, c * w.y - s * w.z, s * w.y + c * w.z};
+  }
+};
+
+Scene empty_scene() {
+  Scene scene;
+  scene.bands = 1;
+  scene.materials = {{"grey", {0.5}, {1}}};
+  scene.objects = {{"object", ""}};
+  return scene;
+}
+
+void add(Scene& scene, std::vector<Vec3> loop, const Placement& place) {
+  for (Vec3& v : loop) v = place(v);
+  Surface surface;
+  surface.polygon = {std::move(loop), {}};
+  scene.surfaces.push_back(surface);
+}
+
+/// The six sides of a box, out or in: bottom and top first.
+void add_box(Scene& scene, const Vec3& a, const Vec3& b, bool outward, const Placement& place) {
+  const std::vector<std::vector<Vec3>> loops = {{{a.x, a.y, a.z}, {a.x, b.y, a.z}, {b.x, b.y, a.z}, {b.x, a.y, a.z}},
+                                                {{a.x, a.y, b.z}, {b.x, a.y, b.z}, {b.x, b.y, b.z}, {a.x, b.y, b.z}},
+                                                {{a.x, a.y, a.z}, {b.x, a.y, a.z}, {b.x, a.y, b.z}, {a.x, a.y, b.z}},
+                                                {{b.x, a.y, a.z}, {b.x, b.y, a.z}, {b.x, b.y, b.z}, {b.x, a.y, b.z}},
+                                                {{b.x, b.y, a.z}, {a.x, b.y, a.z}, {a.x, b.y, b.z}, {b.x, b.y, b.z}},
+                                                {{a.x, b.y, a.z}, {a.x, a.y, a.z}, {a.x, a.y, b.z}, {a.x, b.y, b.z}}};
+  for (std::vector<Vec3> loop : loops) {
+    if (!outward) std::ranges::reverse(loop);
+    add(scene, loop, place);
+  }
+}
+
+struct Rows {
+  explicit Rows(Scene s, const MeshOptions& options = {})
+      : scene(std::move(s)), soup(make_soup(scene)), mesh(make_patch_mesh(scene, soup, options)) {}
+
+  std::vector<std::vector<double>> dense(const FormFactorMatrix& F) const {
+    std::vector<std::vector<double>> rows(F.rows(), std::vector<double>(F.columns));
+    for (std::size_t i = 0; i < F.rows(); ++i) {
+      for (std::size_t k = 0; k < F.row(i).size(); ++k) rows[i][F.row_columns(i)[k]] = F.row(i)[k];
+    }
+    return rows;
+  }
+  PointRows rows_of(const MeshVisibility& visibility) const { return point_rows(visibility, 0, mesh.elements.size()); }
+  PointRows exact() const { return rows_of(ExactVisibility(mesh, soup)); }
+  PointRows by_rays(const RayOptions& options) const { return rows_of(RaySampledVisibility(mesh, soup, options)); }
+
+  Scene scene;
+  PolygonSoup soup;
+  PatchMesh mesh;
+};
+
+double rms(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < a[i].size(); ++j, ++count) sum += (a[i][j] - b[i][j]) * (a[i][j] - b[i][j]);
+  }
+  return std::sqrt(sum / count);
+}
+
+/// A shelf's board on the floor of a room and a book on the board: 0 … 5 the room, 6 … 11 the board, 12 … 17 the book.
+Scene book_on_board(const Placement& place) {
+  Scene scene = empty_scene();
+  add_box(scene, {-2, -2, 0}, {2, 2, 3}, false, place);
+  add_box(scene, {-1, -1, 0}, {1, 1, 0.25}, true, place);
+  add_box(scene, {-0.25, -0.25, 0.25}, {0.5, 0.5, 1}, true, place);
+  return scene;
+}
+
+class TurnedOrNot : public testing::TestWithParam<double> {
+ protected:
+  Placement place{GetParam()};
+};
+INSTANTIATE_TEST_SUITE_P(Contacts, TurnedOrNot, testing::Values(0.0, 0.4));
+
+TEST_P(TurnedOrNot, BothSidesOfASheetSee) {
+  Scene scene = empty_scene();
+  add_box(scene, {-2, -2, 0}, {2, 2, 3}, false, place);
+  const std::vector<Vec3> sheet = {{-1, -1, 1.5}, {1, -1, 1.5}, {1, 1, 1.5}, {-1, 1, 1.5}};
+  add(scene, sheet, place);
+  add(scene, {sheet.rbegin(), sheet.rend()}, place);
+  for (const double patch_size : {0.0, 1.0, 0.7}) {  // sample points on the diagonal of the sheet, too
+    const Rows rows(scene, {.patch_size = patch_size});
+    const PointRows exact = rows.exact();
+    EXPECT_EQ(exact.statistics.covered_points, 0u) << patch_size;
+    EXPECT_LT(exact.statistics.closure_max_defect, 1e-12) << patch_size;
+    const PointRows sampled = rows.by_rays({.rays = 1024});
+    EXPECT_EQ(sampled.statistics.covered_points, 0u) << patch_size;
+    EXPECT_LT(rms(rows.dense(sampled.F), rows.dense(exact.F)), 1e-3) << patch_size;
+  }
+}
+
+TEST_P(TurnedOrNot, PointsBetweenSolidsSeeNothing) {
+  const Rows rows(book_on_board(place));
+  const auto& elements = rows.mesh.elements;
+  const Contacts contacts(rows.soup);
+  const PointRows exact = rows.exact();
+  for (std::size_t e = 0; e < elements.size(); ++e)
+    EXPECT_EQ(contacts.covered(elements[e].facet, elements[e].sample), exact.F.row(e).empty()) << e;
+  EXPECT_GE(exact.statistics.covered_points, 3u) << "floor, bottoms of board and book; in the middle, the board's top";
+  for (const Estimator estimator : {Estimator::kernel, Estimator::hemisphere}) {
+    const RayOptions options{.rays = 1 << 14, .estimator = estimator};
+    const PointRows sampled = rows.by_rays(options);
+    EXPECT_EQ(sampled.statistics.covered_points, exact.statistics.covered_points);
+    EXPECT_LT(rms(rows.dense(sampled.F), rows.dense(exact.F)), 2e-3) << to_string(estimator);
+    RayOptions untold = options;
+    untold.contacts = false;
+    EXPECT_GT(rms(rows.dense(rows.by_rays(untold).F), rows.dense(exact.F)), 2e-2) << "the book sees through the board";
+  }
+}
+
+TEST_P(TurnedOrNot, AreasBetweenSolidsAreLeftOut) {
+  const Rows rows(book_on_board(place));
+  PairOptions pairs;
+  pairs.tolerance = 1e-3;
+  const auto truth = rows.dense(area_rows(rows.mesh, rows.soup, pairs, 1).F);
+  for (const Estimator estimator : {Estimator::kernel, Estimator::hemisphere}) {
+    RayOptions options{.rays = 1 << 12, .estimator = estimator};
+    const auto error = [&] {
+      return rms(rows.dense(sampled_area_rows(rows.mesh, rows.soup, ExchangeScene::Unit::element, options).F), truth);
+    };
+    EXPECT_LT(error(), 4e-3) << to_string(estimator);
+    options.contacts = false;
+    EXPECT_GT(error(), 8e-3) << to_string(estimator);
+  }
+}
+
+TEST(Contacts, WhatLiesOnTopIsSeen) {
+  Scene scene = empty_scene();
+  add_box(scene, {-2, -2, 0}, {2, 2, 3}, false, {});
+  add(scene, {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {});  // a rug at the floor's level
+  const Rows rows(scene);
+  const auto exact = rows.dense(rows.exact().F);
+  EXPECT_LT(rms(rows.dense(rows.by_rays({.rays = 1 << 14}).F), exact), 1e-3);
+  EXPECT_GT(rms(rows.dense(rows.by_rays({.rays = 1 << 14, .contacts = false}).F), exact), 1e-2);
+  EXPECT_GT(exact[1][6], 0) << "the ceiling sees the rug";
+}
+
+/// In a furnished room a fifth of all sample points lie in contacts.
+TEST(Contacts, RowsOfFurnishedRoomsApproachExactOnes) {
+  const Rows rows(make_furnished_room(200, 1));
+  const PointRows exact = rows.exact();
+  ASSERT_GT(exact.statistics.covered_points, 20u);
+  const auto truth = rows.dense(exact.F);
+  double previous = 0.02;
+  for (const std::uint32_t n : {16u, 256u, 4096u}) {
+    const PointRows sampled = rows.by_rays({.rays = n});
+    EXPECT_EQ(sampled.statistics.covered_points, exact.statistics.covered_points);
+    const double error = rms(rows.dense(sampled.F), truth);
+    EXPECT_LT(error, previous / 2);
+    previous = error;
+  }
+  EXPECT_LT(rms(rows.dense(rows.by_rays({.rays = 4096, .estimator = Estimator::hemisphere}).F), truth), 3e-4);
+  EXPECT_GT(rms(rows.dense(rows.by_rays({.rays = 256, .contacts = false}).F), truth), 5e-3);
+}
+
+}  // namespace
+}  // namespace exitance
