@@ -35,7 +35,12 @@ constexpr std::uint64_t kExtendedCost = 5;
 
 ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& receiver, const Source& source,
                                        std::span<const std::uint32_t> items, double most)
-    : soup_(&soup), receiver_(receiver), source_(source), items_(items), most_(most) {
+    : soup_(&soup),
+      receiver_(receiver),
+      source_(source),
+      items_(items),
+      most_(most),
+      contact_(soup, receiver, source, items) {
   events_ = visual_events(soup, receiver, source, items);
   const std::vector<Vec3> loop = corners_of(soup, receiver);
   find_contacts();
@@ -125,10 +130,12 @@ void ObstructedExchange::add_about_contacts(const AreaCell& shape, std::vector<A
 }
 
 PointFormFactor ObstructedExchange::look(Viewpoint& view, const Vec3& from, double tolerance) {
+  ++points_;
+  if (contact_.buries(from)) return {};
   const std::uint64_t extended_before = view.extended_count();
   view.look_from({from, soup_->facets()[receiver_.facet].plane.normal, receiver_.facet});
   const PointFormFactor f = view.form_factor(source_, items_, tolerance);
-  points_ += 1 + kExtendedCost * (view.extended_count() - extended_before);
+  points_ += kExtendedCost * (view.extended_count() - extended_before);
   return f;
 }
 
@@ -186,7 +193,7 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
   // The rule before erred by what the two differ; this one errs less, unless they agree by chance.
   cell.error = std::min(truncation.error, std::max(truncation.least, kDifference * std::fabs(cell.integral - before)));
   cell.fall = truncation.fall;
-  if (first && cell.slowest > cell.fall) {
+  if (first && cell.error > 0 && cell.slowest > cell.fall) {
     cell.error *= std::pow(cell.slowest / cell.fall, 1 + order);
     cell.fall = cell.slowest;
   }
@@ -204,7 +211,7 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
     cell.error = kCorners * std::fabs(mean * area - cell.integral) + kSpread * (greatest - least) * area;
     cell.fall = std::clamp(cell.fall, 0.05, 0.3);
   }
-  if (order > kScoutOrder && compare && !cell.mixed) {
+  if (order > kScoutOrder && compare && !cell.mixed && outline != 0) {
     const PoleError poles = pole_error(view.seen_edges(), cell.shape, order);
     if (poles.error > cell.error) cell.fall = std::max(cell.fall, poles.fall);
     cell.error += poles.error;
@@ -243,10 +250,10 @@ std::optional<std::uint32_t> ObstructedExchange::find_event(Viewpoint& view, Sig
   for (std::uint32_t e = 0; e < events_.size() + found_.size(); ++e) {
     if (happens_here(e)) return e;
   }
-  sight(view, here.point);
-  const std::vector<SeenEdge> from_here = view.seen_edges();
-  sight(view, there.point);
-  const std::vector<SeenEdge> from_there = view.seen_edges();
+  const auto edges_from = [&](const Vec3& x) {
+    return sight(view, x).outline != 0 ? view.seen_edges() : std::vector<SeenEdge>{};
+  };
+  const std::vector<SeenEdge> from_here = edges_from(here.point), from_there = edges_from(there.point);
   for (const EdgeEvent& event : events_between(from_here, from_there)) {
     found_.push_back(event);
     const auto e = static_cast<std::uint32_t>(events_.size() + found_.size() - 1);

@@ -10,6 +10,7 @@
 
 #include "geometry/viewpoint.h"
 #include "src/form_factor/edge_event.h"
+#include "src/form_factor/rounded_contact.h"
 #include "src/form_factor/visual_events.h"
 
 namespace exitance {
@@ -74,6 +75,7 @@ class ObstructedExchange {
   Source receiver_, source_;
   std::span<const std::uint32_t> items_;
   double most_ = 1, area_ = 0;
+  RoundedContact contact_;
   std::vector<VisualEvent> events_;
   std::unordered_map<std::uint64_t, std::uint64_t> same_;  ///< outlines that stand for others
   std::vector<EdgeEvent> found_;                           ///< events that points of a cell saw on different sides of

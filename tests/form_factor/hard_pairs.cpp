@@ -136,6 +136,29 @@ KnownPair thin(Random& random) {
   return pair;
 }
 
+/// A box, turned about the floor's normal, stands on the floor and ends below the ceiling, in it or above it; another
+/// one may stand on it.
+KnownPair standing(Random& random) {
+  KnownPair pair;
+  pair.receiver = rectangle(2, 0, range(random, 0, 1, 4), range(random, 0, 1, 4));
+  pair.source = turned_over(rectangle(2, 1, range(random, 0, 1, 4), range(random, 0, 1, 4)));
+  const int a = random.whole(1, 9), b = random.whole(-9, 9);
+  const double s = 1.0 / (a * a + b * b), cosine = s * (a * a - b * b), sine = s * 2 * a * b;
+  const Vec3 middle{lattice(random, 0.25, 0.75, 8), lattice(random, 0.25, 0.75, 8), 0};
+  const auto add = [&](double width, double depth, double low, double high) {
+    ConvexBody body = box({-width, width}, {-depth, depth}, {low, high});
+    for (Loop& face : body) {
+      for (Vec3& p : face) p = middle + Vec3{cosine * p.x - sine * p.y, sine * p.x + cosine * p.y, p.z};
+    }
+    pair.occluders.push_back(body);
+  };
+  const double width = lattice(random, 0.125, 0.5, 16), depth = lattice(random, 0.125, 0.5, 16),
+               high = lattice(random, 0.25, 1.25, 8);
+  add(width, depth, 0, high);
+  if (random.whole(0, 1)) add(0.5 * width, depth, high, high + lattice(random, 0.125, 1, 8));
+  return pair;
+}
+
 KnownPair slivers(Random& random) {
   const auto point = [&](double low, double high) {
     return Vec3{random.real(-0.25, 1.25), random.real(-0.25, 1.25), random.real(low, high)};
@@ -169,6 +192,8 @@ KnownPair hard_pair(std::string_view family, int number) {
     pair = hinged(random, exact);
   } else if (family == "thin") {
     pair = thin(random);
+  } else if (family == "standing") {
+    pair = standing(random);
   } else if (family == "slivers") {
     pair = slivers(random);
   } else if (family == "sheets") {

@@ -11,9 +11,9 @@ namespace exitance {
 /// plates: rectangles opposite or at a right angle, past one to four rectangles, all on a lattice of 1/16, so that much
 /// touches and lies in one plane. boxes: past one to three closed boxes on a lattice of 1/8, which stand on the plates,
 /// touch, overlap or pierce. hinged: plates that share an edge at any angle, past boxes that stand on one of them, and
-/// on each other. thin: plates of 2^-13, turned. slivers: triangles and plates of aspect up to 1e4. sheets: like
+/// on each other. standing: turned boxes that stand on one plate and pierce the other. thin: plates of 2^-13, turned. slivers: triangles and plates of aspect up to 1e4. sheets: like
 /// random_pair, by other seeds.
-inline constexpr std::array<std::string_view, 6> kHardFamilies{"plates", "boxes",   "hinged",
+inline constexpr std::array<std::string_view, 7> kHardFamilies{"plates", "boxes",   "hinged", "standing",
                                                                "thin",   "slivers", "sheets"};
 
 /// The number-th pair of a family; odd ones are turned, by a rotation of their own, and their coordinates rounded. Many
