@@ -1,0 +1,132 @@
+// Where does a second of work go best: into finer patches or into better visibility? Error of the solved radiosity,
+// that of meshing included, against the whole time.
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/csv_table.h"
+#include "experiments/plot_note.h"
+#include "experiments/power_law.h"
+#include "src/output/plot.h"
+#include "src/reference/comparison.h"
+#include "src/reference/matrix_solution.h"
+#include "src/reference/run_clock.h"
+#include "src/scene/furnished_room.h"
+#include "src/scene/reader.h"
+#include "src/solve/radiosity_system.h"
+
+namespace exitance {
+namespace {
+
+struct Subject {
+  std::string name;
+  Scene scene;
+  std::vector<double> patch_sizes;  ///< coarse to fine; the reference's are half of the last, cut into four elements
+};
+
+std::vector<Subject> subjects(bool reduced) {
+  std::vector<Subject> all;
+  all.push_back({"Cornell box", read_scene(EXITANCE_SOURCE_DIR "/data/cornell_box_closed.toml", {}), {0.4, 0.2}});
+  if (reduced) return all;
+  all.back().patch_sizes = {0.4, 0.2, 0.1, 0.05};
+  all.push_back({"furnished room", make_furnished_room(500, 1), {3, 1.5, 1}});
+  return all;
+}
+
+struct Way {
+  std::string name;
+  std::optional<RayOptions> rays;
+};
+
+std::vector<Way> ways() {
+  return {
+      {"exact", {}},
+      {"16 rays", RayOptions{.rays = 16}},
+      {"256 rays", RayOptions{.rays = 256}},
+      {"hemisphere of 1024", RayOptions{.rays = 1024, .sampler = Sampler::owen, .estimator = Estimator::hemisphere}},
+      {"hemisphere of 16384", RayOptions{.rays = 16384, .sampler = Sampler::owen, .estimator = Estimator::hemisphere}},
+      {"centre ray", RayOptions{.estimator = Estimator::centre}}};
+}
+
+SolutionRecord solved(const Scene& scene, const MeshOptions& mesh, const std::optional<RayOptions>& rays) {
+  SolveOptions options;
+  options.mesh = mesh;
+  options.rays = rays;
+  options.tolerance = 1e-9;
+  return record_of(scene, solve_scene(scene, options));
+}
+
+void answer(const Subject& subject, CsvTable& table, Plot& plot) {
+  const SolutionRecord reference =
+      solved(subject.scene, {.patch_size = subject.patch_sizes.back() / 2, .elements_per_edge = 2}, {});
+  for (const Way& way : ways()) {
+    Curve curve;
+    for (const double size : subject.patch_sizes) {
+      const RunClock clock;
+      std::optional<SolutionRecord> solution;
+      try {
+        solution = solved(subject.scene, {.patch_size = size}, way.rays);
+      } catch (const InvalidSystem& wrong) {  // rows of form factors that sum to too much
+        table.rows.push_back({subject.name, way.name, digits(size), "none", "none", "none", "none",
+                              fmt::format("{:.3g}", clock.cpu_seconds())});
+        fmt::print(stderr, "{}, {}, {} m: {}\n", subject.name, way.name, size, wrong.what());
+        continue;
+      }
+      const double seconds = clock.cpu_seconds();
+      const Comparison errors = compare(reference, *solution);
+      table.rows.push_back({subject.name, way.name, digits(size), fmt::format("{}", solution->mesh.patches.size()),
+                            digits(errors.error), digits(errors.error_worst_1_percent), digits(errors.pointwise_error),
+                            fmt::format("{:.3g}", seconds)});
+      curve.emplace_back(seconds, errors.error);
+      fmt::print(stderr, "{}, {}, {} m: {:.3g} in {:.3g} s\n", subject.name, way.name, size, errors.error, seconds);
+    }
+    plot.series.push_back({fmt::format("{} (t^{:.2f})", way.name, slope(curve)), curve});
+  }
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Error of the radiosity against the time of the whole solution"};
+  std::string out, expected;
+  std::vector<std::string> names;
+  bool reduced = false;
+  app.add_option("--scene", names, "Only these");
+  app.add_option("-o,--output", out, "Folder for results.csv and plots");
+  app.add_flag("--reduced", reduced, "The first scene on coarse meshes");
+  app.add_option("--check", expected, "Compare errors with this table; exit code 1 where they differ");
+  CLI11_PARSE(app, argc, argv);
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  CsvTable table{{"scene", "visibility", "patch_size", "patches", "error", "error_worst_1_percent", "pointwise_error",
+                  "cpu_seconds"},
+                 {}};
+  std::size_t drawn = 0;
+  for (const Subject& subject : subjects(reduced)) {
+    ++drawn;
+    if (!names.empty() && std::ranges::find(names, subject.name) == names.end()) continue;
+    Plot plot{fmt::format("{}: solved radiosity", subject.name), "seconds of one thread",
+              "error (George et al., eq. 7), meshing included"};
+    plot.note = plot_note();
+    answer(subject, table, plot);
+    if (out.empty()) continue;
+    std::filesystem::create_directories(out);
+    table.write(std::filesystem::path(out) / "results.csv");
+    write_plot(std::filesystem::path(out) / fmt::format("plot_{}.svg", drawn), plot);
+  }
+  if (expected.empty()) return 0;
+  const std::vector<std::string> wrong = differences(table, CsvTable::read(expected), 4, 0.1, {"cpu_seconds"});
+  for (const std::string& line : wrong) fmt::print(stderr, "{}\n", line);
+  return wrong.empty() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace exitance
+
+int main(int argc, char** argv) {
+  return exitance::run(argc, argv);
+}
