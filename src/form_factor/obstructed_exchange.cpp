@@ -28,8 +28,23 @@ constexpr double kInset = 1e-3;
 /// Proven error of a point's value beyond which extended precision is asked: this, or what the cell's share of the
 /// tolerance allows. Cells near a contact are tiny, and there double precision proves little.
 constexpr double kPointTolerance = 1e-13, kCellShare = 1e-2;
+/// A corner of a cell is off by so many roundings of its largest coordinate, those of where it is cut included.
+constexpr double kRoundedCorners = 4;
 /// How many points a value in extended precision counts for.
 constexpr std::uint64_t kExtendedCost = 5;
+
+double extent_of(const AreaCell& shape) {
+  double extent = 0;
+  for (const Vec3& v : shape.loop()) extent = std::max({extent, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  return extent;
+}
+
+double perimeter_of(const AreaCell& shape) {
+  const auto loop = shape.loop();
+  double perimeter = norm(loop[0] - loop.back());
+  for (std::size_t k = 1; k < loop.size(); ++k) perimeter += norm(loop[k] - loop[k - 1]);
+  return perimeter;
+}
 
 }  // namespace
 
@@ -189,6 +204,9 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
   }
   // Rounding: of each weight and product, and of the sum.
   cell.point_error += (16 + static_cast<double>(scratch_.size())) * kRoundoff * cell.integral;
+  // Corners and points are rounded, too. So far outside of a cell, or away from where a point should be, nothing more
+  // is seen than `greatest` within, whose change over the cell's width is no more than that itself.
+  cell.point_error += kRoundedCorners * kRoundoff * extent_of(cell.shape) * perimeter_of(cell.shape) * greatest;
   const Truncation truncation = truncation_of(weighted_, cell.order);
   // The rule before erred by what the two differ; this one errs less, unless they agree by chance.
   cell.error = std::min(truncation.error, std::max(truncation.least, kDifference * std::fabs(cell.integral - before)));

@@ -93,8 +93,7 @@ KnownPair plates(Random& random) {
   return pair;
 }
 
-/// A box in contact with both plates, or one that stands on a plate and pierces the other, may not be turned: rounding
-/// would decide whether what lies inside it sees what else does.
+/// Turned ones neither stand on the receiver nor reach a source opposite it: pairs of `standing` do.
 KnownPair boxes(Random& random, bool exact) {
   const double low = exact ? 0 : 0.125, high = exact ? 1 : 0.875;
   KnownPair pair = lattice_plates(random, 8);

@@ -11,7 +11,8 @@ namespace exitance {
 /// plates: rectangles opposite or at a right angle, past one to four rectangles, all on a lattice of 1/16, so that much
 /// touches and lies in one plane. boxes: past one to three closed boxes on a lattice of 1/8, which stand on the plates,
 /// touch, overlap or pierce. hinged: plates that share an edge at any angle, past boxes that stand on one of them, and
-/// on each other. standing: turned boxes that stand on one plate and pierce the other. thin: plates of 2^-13, turned. slivers: triangles and plates of aspect up to 1e4. sheets: like
+/// on each other. standing: opposite plates, past turned boxes that stand on the one and may pierce the other, and on
+/// each other. thin: plates of 2^-13, turned. slivers: triangles and plates of aspect up to 1e4. sheets: like
 /// random_pair, by other seeds.
 inline constexpr std::array<std::string_view, 7> kHardFamilies{"plates", "boxes",   "hinged", "standing",
                                                                "thin",   "slivers", "sheets"};
