@@ -204,8 +204,8 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
   }
   // Rounding: of each weight and product, and of the sum.
   cell.point_error += (16 + static_cast<double>(scratch_.size())) * kRoundoff * cell.integral;
-  // Corners and points are rounded, too. So far outside of a cell, or away from where a point should be, nothing more
-  // is seen than `greatest` within, whose change over the cell's width is no more than that itself.
+  // Corners and points are rounded, too. That so far outside of a cell, or away from where a point should be, no more is
+  // seen than `greatest` within is an estimate: nothing proves it.
   cell.point_error += kRoundedCorners * kRoundoff * extent_of(cell.shape) * perimeter_of(cell.shape) * greatest;
   const Truncation truncation = truncation_of(weighted_, cell.order);
   // The rule before erred by what the two differ; this one errs less, unless they agree by chance.
