@@ -67,6 +67,7 @@ int main(int argc, char** argv) {
   add_check(app);
   add_compare(app);
   add_diff(app);
+  add_dynamic(app);
   add_formfactor(app);
   add_generate(app);
   add_reference(app);

@@ -102,12 +102,14 @@ class Solve {
         ->check(positive_number())
         ->capture_default_str();
     rays_.add_to(verb);
-    verb.add_option("--patch-size", options_.mesh.patch_size, "Longest edge of a patch [m]; 0: surfaces as they are")
-        ->check(number_between(0))
-        ->capture_default_str();
-    verb.add_option("--elements", options_.mesh.elements_per_edge, "Elements along the edge of a patch")
-        ->check(whole_number_between(1, kMostElements))
-        ->capture_default_str();
+    patch_size_ = verb.add_option("--patch-size", options_.mesh.patch_size,
+                                  "Longest edge of a patch [m]; 0: surfaces as they are; as the scene says unless given")
+                      ->check(number_between(0))
+                      ->capture_default_str();
+    elements_ = verb.add_option("--elements", options_.mesh.elements_per_edge,
+                                "Elements along the edge of a patch; as the scene says unless given")
+                    ->check(whole_number_between(1, kMostElements))
+                    ->capture_default_str();
     verb.add_option("--tolerance", options_.tolerance, "Bound of the solver's error of B, relative to B max")
         ->check(positive_number())
         ->capture_default_str();
@@ -139,6 +141,11 @@ class Solve {
     if (shots_ && method_ != "shoot") throw CLI::ValidationError("--shots", "needs --method shoot");
 
     const Scene scene = scene_.read();
+    if (patch_size_->count() == 0) options_.mesh.patch_size = scene.mesh.patch_size;
+    if (elements_->count() == 0) {
+      options_.mesh.elements_per_edge = scene.mesh.elements_per_edge;
+      options_.mesh.small_patch = scene.mesh.small_patch;
+    }
     for (const std::string& warning : scene.warnings) print_warning(warning);
     std::optional<ResultFolder> folder;
     if (!folder_.empty()) folder.emplace(folder_);
@@ -207,6 +214,7 @@ class Solve {
   }
 
   CLI::App& verb_;
+  CLI::Option *patch_size_ = nullptr, *elements_ = nullptr;
   SceneOptions scene_;
   SolveOptions options_;
   RaySettings rays_;

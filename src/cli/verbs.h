@@ -12,6 +12,7 @@ enum ExitCode : int { done = 0, check_failed = 1, usage = 2, bad_input = 3, limi
 void add_check(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_diff(CLI::App& app);
+void add_dynamic(CLI::App& app);
 void add_formfactor(CLI::App& app);
 void add_generate(CLI::App& app);
 void add_reference(CLI::App& app);

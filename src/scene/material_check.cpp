@@ -21,6 +21,7 @@ std::string place(const Material& m) {
 void drop_unused(Scene& scene) {
   std::vector<std::uint32_t> uses(scene.materials.size(), 0);
   for (const Surface& s : scene.surfaces) ++uses[s.material];
+  for (const Surface& s : scene.absent) ++uses[s.material];
   std::vector<std::uint32_t> renumbered(scene.materials.size(), 0);
   std::vector<Material> kept;
   for (std::size_t i = 0; i < uses.size(); ++i) {
@@ -29,6 +30,7 @@ void drop_unused(Scene& scene) {
   }
   scene.materials = std::move(kept);
   for (Surface& s : scene.surfaces) s.material = renumbered[s.material];
+  for (Surface& s : scene.absent) s.material = renumbered[s.material];
 }
 
 void define(Material& m, std::vector<std::string>& warnings) {

@@ -18,7 +18,7 @@ bool is_emission(double E);
 
 double to_exitance(double emission, Emission meaning);
 
-/// Drops materials that no surface uses; gives those without rho 0.5 and those without E 0, each time with a warning
+/// Drops materials that no surface uses, present or absent; gives those without rho 0.5 and those without E 0, each time with a warning
 /// where that was not said on purpose; sets scene.bands to the longest list of any material (at least `bands`) and
 /// repeats single numbers for all bands. Throws InputError for rho outside [0, 1) and E that is_emission does not hold
 /// for (unless keep_faults), and for lists of different lengths.

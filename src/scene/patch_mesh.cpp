@@ -248,8 +248,10 @@ class SquareGrid {
 class Mesher {
  public:
   Mesher(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options)
-      : scene_(scene), soup_(soup), samples_(soup), size_(options.patch_size), per_edge_(options.elements_per_edge) {
+      : scene_(scene), soup_(soup), samples_(soup), size_(options.patch_size), small_(options.small_patch), elements_per_edge_(options.elements_per_edge),
+        per_edge_(options.elements_per_edge) {
     if (!(size_ >= 0) || std::isinf(size_)) throw std::invalid_argument("the patch size must be a finite number ≥ 0");
+    if (!(small_ >= 0)) throw std::invalid_argument("the area of small patches must be a number ≥ 0");
     if (per_edge_ == 0) throw std::invalid_argument("elements per edge must be at least 1");
   }
 
@@ -340,8 +342,15 @@ class Mesher {
       for (const Corner& c : soup_.corners(soup_.facets()[f])) loop.push_back(soup_.vertices()[c.vertex]);
     }
     surface_ = surface;
+    per_edge_ = elements_per_edge_;
     if (facets_.empty()) return Shape::none;
     const Polygon& polygon = scene_.surfaces[surface].polygon;
+    const Shape shape = shape_of(polygon);
+    if (small_ > 0 && (shape == Shape::needle || area_of_patch(shape, polygon) <= small_)) per_edge_ = 1;
+    return shape;
+  }
+
+  Shape shape_of(const Polygon& polygon) {
     outer_ = without_repetitions(polygon.outer);
     const auto needles = std::ranges::count_if(facets_, is_needle);
     if (needles == std::ssize(facets_)) return Shape::needle;
@@ -349,6 +358,18 @@ class Mesher {
     const bool is_quad = needles == 0 && polygon.holes.empty() && outer_.size() == 4 && facets_.size() <= 2 &&
                          is_strictly_convex(outer_);
     return is_quad ? Shape::quad : Shape::other;
+  }
+
+  /// About, of a patch of the current surface.
+  double area_of_patch(Shape shape, const Polygon& polygon) const {
+    if (shape == Shape::triangle) {
+      const double n = parts(longest_edge(facets_[0]));
+      return area(facets_[0]) / (n * n);
+    }
+    const auto part = [&](double total) { return total / parts(total); };
+    if (shape == Shape::quad) return part(width(outer_)) * part(height(outer_));
+    const SquareGrid grid(polygon);
+    return part(grid.extent(0)) * part(grid.extent(1));
   }
 
   static double width(const Loop& q) { return std::max(length(q[0], q[1]), length(q[3], q[2])); }
@@ -580,13 +601,22 @@ class Mesher {
   const Scene& scene_;
   const PolygonSoup& soup_;
   SampleSite samples_;
-  double size_;
-  std::uint32_t per_edge_;
+  double size_, small_;
+  std::uint32_t elements_per_edge_;
+  std::uint32_t per_edge_;  ///< of the current surface
   PatchMesh mesh_;
   std::uint32_t surface_ = 0, first_facet_ = 0;
   std::vector<Loop> facets_;  ///< of the current surface
   Loop outer_;                ///< its outer corners, each once
 };
+
+void refuse_if_too_large(const Scene& scene, Mesher& mesher, const MeshOptions& options, std::uint32_t first,
+                         std::uint32_t last) {
+  Mesher::Size size;
+  for (std::uint32_t k = first; k < last; ++k)
+    if (!scene.surfaces[k].obstruction_only) mesher.add_size_of(k, size);
+  mesher.refuse_if_too_large(size, options.memory_limit);
+}
 
 }  // namespace
 
@@ -603,19 +633,21 @@ PolygonSoup make_soup(const Scene& scene) {
 }
 
 PatchMesh make_patch_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options) {
-  refuse_too_large_a_mesh(scene, soup, options);
+  return make_patch_mesh(scene, soup, options, 0, static_cast<std::uint32_t>(scene.surfaces.size()));
+}
+
+PatchMesh make_patch_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options, std::uint32_t first,
+                          std::uint32_t last) {
   Mesher mesher(scene, soup, options);
-  for (std::uint32_t k = 0; k < scene.surfaces.size(); ++k)
+  refuse_if_too_large(scene, mesher, options, first, last);
+  for (std::uint32_t k = first; k < last; ++k)
     if (!scene.surfaces[k].obstruction_only) mesher.cut(k);
   return mesher.take();
 }
 
 void refuse_too_large_a_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options) {
   Mesher mesher(scene, soup, options);
-  Mesher::Size size;
-  for (std::uint32_t k = 0; k < scene.surfaces.size(); ++k)
-    if (!scene.surfaces[k].obstruction_only) mesher.add_size_of(k, size);
-  mesher.refuse_if_too_large(size, options.memory_limit);
+  refuse_if_too_large(scene, mesher, options, 0, static_cast<std::uint32_t>(scene.surfaces.size()));
 }
 
 }  // namespace exitance

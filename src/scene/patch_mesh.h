@@ -59,6 +59,7 @@ struct PatchMesh {
 struct MeshOptions {
   double patch_size = 0;                ///< longest edge of a patch [m]; 0: every surface is one patch
   std::uint32_t elements_per_edge = 1;  ///< a quadrilateral patch has this many squared elements, a triangle likewise
+  double small_patch = 0;               ///< [m²] patches of surfaces cut to this area or less are one element each
   std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  ///< for the mesh [bytes]
 };
 
@@ -78,6 +79,10 @@ PolygonSoup make_soup(const Scene& scene);
 /// to. patch_size ≥ 0 and finite, elements_per_edge ≥ 1, or std::invalid_argument; else what refuse_too_large_a_mesh
 /// throws, before anything is cut.
 PatchMesh make_patch_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options);
+
+/// The same of the surfaces `first` … `last` − 1 only.
+PatchMesh make_patch_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options, std::uint32_t first,
+                          std::uint32_t last);
 
 /// Throws LimitError, with the numbers, when the mesh would have more points than 32 bits count or would take more
 /// memory, about, than the options allow.

@@ -39,6 +39,13 @@ struct SceneObject {
   std::string file;  ///< empty when it comes from no file
 };
 
+/// How a scene file wants its surfaces cut (MeshOptions), where nobody says otherwise.
+struct MeshDefaults {
+  double patch_size = 0;                ///< longest edge of a patch [m]; 0: every surface is one patch
+  std::uint32_t elements_per_edge = 1;  ///< ≥ 1
+  double small_patch = 0;               ///< [m²] patches that are not larger are one element each
+};
+
 struct Camera {
   Vec3 eye, target, up{0, 0, 1};
   double vertical_fov_degrees = 40;
@@ -51,6 +58,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<SceneObject> objects;
   std::vector<Surface> surfaces;  ///< in file order
+  std::vector<Surface> absent;    ///< of objects that are not there at first (edit.h): no part of the scene
+  MeshDefaults mesh;
   std::optional<Camera> camera;
   std::vector<std::string> warnings;  ///< what was noticed while reading and does not stop the work
 };

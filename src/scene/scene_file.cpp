@@ -14,29 +14,36 @@
 #include "src/scene/input_error.h"
 #include "src/scene/mesh_file.h"
 #include "src/scene/placement.h"
+#include "src/scene/scene_extent.h"
 #include "src/scene/text_cursor.h"
 #include "src/scene/toml_table.h"
 
 namespace exitance {
 namespace {
 
+/// Along the edge of a patch: what would make 2^32 points of a single one.
+constexpr std::int64_t kMostElements = 65'535;
+
 class SceneFile {
  public:
   SceneFile(const std::filesystem::path& path, Emission emission, bool keep_faults)
       : path_(path), emission_(emission), keep_faults_(keep_faults) {}
 
-  Scene read() {
+  DynamicScene read() {
     const toml::table parsed = parse();
     TomlTable file(parsed, path_.string(), "a scene file");
     scene_.name = file.string("name").value_or(path_.stem().string());
     read_unit(file);
     if (auto camera = file.table("camera")) scene_.camera = read_camera(*camera);
+    if (auto mesh = file.table("mesh")) read_mesh_defaults(*mesh);
     for (TomlTable& material : file.tables("material")) read_material(material);
     for (TomlTable& object : file.tables("object")) read_object(object);
+    for (TomlTable& event : file.tables("event")) read_event(event);
+    for (TomlTable& camera : file.tables("camera_path")) read_camera_path(camera);
     file.refuse_unknown_keys();
     if (scene_.surfaces.empty()) file.fail(0, "has no surfaces; add an [[object]]");
-    settle_materials(scene_, 1, keep_faults_);
-    return std::move(scene_);
+    settle_materials_with_events();
+    return {std::move(scene_), std::move(events_), std::move(camera_path_)};
   }
 
  private:
@@ -97,6 +104,141 @@ class SceneFile {
     return camera;
   }
 
+  void read_mesh_defaults(TomlTable& table) {
+    const auto size = [&](const char* key) {
+      const double value = table.number(key).value_or(0);
+      if (value < 0) table.fail(table.line_of(key), fmt::format("\"{}\" must not be negative", key));
+      return value;
+    };
+    scene_.mesh.patch_size = size("patch_size");
+    scene_.mesh.small_patch = size("small_patch");
+    const std::int64_t elements = table.integer("elements").value_or(1);
+    if (elements < 1 || elements > kMostElements)
+      table.fail(table.line_of("elements"), fmt::format("\"elements\" must be 1 to {}", kMostElements));
+    scene_.mesh.elements_per_edge = static_cast<std::uint32_t>(elements);
+    table.refuse_unknown_keys();
+  }
+
+  void read_camera_path(TomlTable& table) {
+    CameraAt at;
+    at.time = table.require("time", table.number("time"));
+    if (!camera_path_.empty() && at.time <= camera_path_.back().time)
+      table.fail(table.line_of("time"), "the camera's times must ascend; put its places in order");
+    at.camera = read_camera(table);
+    camera_path_.push_back(at);
+  }
+
+  void read_event(TomlTable& table) {
+    Event event;
+    event.line = table.line();
+    event.time = table.require("time", table.number("time"));
+    if (!events_.empty() && event.time < events_.back().time)
+      table.fail(table.line_of("time"), fmt::format("the event is at {}, but the one before it at {}; put events in "
+                                                    "order of time",
+                                                    event.time, events_.back().time));
+    const std::string object = table.require("object", table.string("object"));
+    const std::string operation = table.require("operation", table.string("operation"));
+    event.edit.operation = find_operation(table, operation);
+    event.edit.object = find_object(table, object);
+    for (const Event& other : events_) {
+      if (other.time == event.time && other.edit.object == event.edit.object)
+        table.fail(table.line_of("time"),
+                   fmt::format("object '{}' has another event at {} (line {}); give each its own time", object,
+                               event.time, other.line));
+    }
+    switch (event.edit.operation) {
+      case Operation::add:
+      case Operation::move:
+        if (event.edit.operation == Operation::move || has_placement(table)) event.edit.placement = read_placement(table);
+        break;
+      case Operation::reshape:
+        read_new_shape(table, event.edit, object);
+        break;
+      case Operation::change:
+        event.edit.materials = read_changes(table);
+        break;
+      default:
+        break;
+    }
+    table.refuse_unknown_keys();
+    events_.push_back(std::move(event));
+  }
+
+  static Operation find_operation(const TomlTable& table, const std::string& name) {
+    for (const Operation o : {Operation::add, Operation::remove, Operation::move, Operation::reshape, Operation::change,
+                              Operation::select, Operation::deselect}) {
+      if (name == name_of(o)) return o;
+    }
+    table.fail(table.line_of("operation"),
+               fmt::format("\"operation\" '{}' is not known; there are add, remove, move, reshape, change, select and "
+                           "deselect",
+                           name));
+  }
+
+  std::uint32_t find_object(const TomlTable& table, const std::string& name) const {
+    const auto found = std::ranges::find(scene_.objects, name, &SceneObject::name);
+    if (found == scene_.objects.end())
+      table.fail(table.line_of("object"),
+                 fmt::format("there is no object '{}'; name one that an [[object]] gives, above", name));
+    if (std::ranges::count(scene_.objects, name, &SceneObject::name) > 1)
+      table.fail(table.line_of("object"), fmt::format("several objects are called '{}'; give each its own name", name));
+    return static_cast<std::uint32_t>(found - scene_.objects.begin());
+  }
+
+  static bool has_placement(const TomlTable& table) {
+    return table.has("scale") || table.has("rotate") || table.has("translate");
+  }
+
+  void read_new_shape(TomlTable& table, Edit& edit, const std::string& name) {
+    Scene part = read_part(table, name);
+    const std::vector<std::uint32_t> numbers = take_materials(part, read_overrides(table, part));
+    for (Surface& surface : part.surfaces) {
+      surface.material = numbers[surface.material];
+      surface.object = edit.object;
+      edit.shape.push_back(std::move(surface));
+    }
+    std::ranges::move(part.warnings, std::back_inserter(scene_.warnings));
+  }
+
+  std::vector<MaterialChange> read_changes(TomlTable& table) const {
+    std::vector<MaterialChange> changes;
+    if (const auto all = table.string("material"))
+      changes.push_back({MaterialChange::kEvery, find_material(table, table.line_of("material"), *all)});
+    if (auto some = table.table("materials")) {
+      for (const std::string& from : some->keys()) {
+        const std::string to = *some->string(from);
+        const auto found = std::ranges::find(scene_.materials, from, &Material::name);
+        if (found == scene_.materials.end())
+          some->fail(some->line_of(from), fmt::format("there is no material '{}'; correct the name", from));
+        changes.push_back({static_cast<std::uint32_t>(found - scene_.materials.begin()),
+                           find_material(*some, some->line_of(from), to)});
+      }
+    }
+    if (changes.empty()) table.fail(table.line(), "a change needs \"material\" or \"materials\"; add one");
+    return changes;
+  }
+
+  /// Materials that only events name stay, and all are numbered anew: surfaces that stand for them are settled, too.
+  void settle_materials_with_events() {
+    std::vector<std::uint32_t*> numbers;
+    for (Event& event : events_) {
+      for (Surface& surface : event.edit.shape) numbers.push_back(&surface.material);
+      for (MaterialChange& change : event.edit.materials) {
+        numbers.push_back(&change.to);
+        if (change.from != MaterialChange::kEvery) numbers.push_back(&change.from);
+      }
+    }
+    const std::size_t absent = scene_.absent.size();
+    for (const std::uint32_t* number : numbers) {
+      Surface stand_in;
+      stand_in.material = *number;
+      scene_.absent.push_back(std::move(stand_in));
+    }
+    settle_materials(scene_, 1, keep_faults_);
+    for (std::size_t k = 0; k < numbers.size(); ++k) *numbers[k] = scene_.absent[absent + k].material;
+    scene_.absent.resize(absent);
+  }
+
   void read_material(TomlTable& table) {
     Material material;
     material.name = table.require("name", table.string("name"));
@@ -132,6 +274,14 @@ class SceneFile {
 
   void read_object(TomlTable& table) {
     const std::string name = table.string("name").value_or("");
+    Scene part = read_part(table, name);
+    const std::vector<std::uint32_t> overrides = read_overrides(table, part);
+    append(std::move(part), overrides, table.flag("absent"));
+    table.refuse_unknown_keys();
+  }
+
+  /// Surfaces as they stand in the scene, with their own materials.
+  Scene read_part(TomlTable& table, const std::string& name) {
     Scene part = read_shape(table, name);
     place(part, read_placement(table));
     if (table.has("mesh")) {
@@ -144,8 +294,7 @@ class SceneFile {
     const bool obstruction_only = table.flag("obstruction_only");
     for (Surface& surface : part.surfaces) surface.obstruction_only |= obstruction_only;
     limit_reflectance(table, part);
-    append(std::move(part), read_overrides(table, part));
-    table.refuse_unknown_keys();
+    return part;
   }
 
   // One of the four forms. Its materials are its own; those of the file are named by surfaces through named_.
@@ -267,6 +416,10 @@ class SceneFile {
     }
     placement.linear = product(placement.linear, scaling(read_scale(table)));
     placement.translation = table.vector("translate").value_or(Vec3{});
+    if (const auto pivot = table.vector("pivot")) {
+      const Placement about_origin{placement.linear, {}};
+      placement.translation = placement.translation + (*pivot - about_origin(*pivot));
+    }
     return placement;
   }
 
@@ -331,19 +484,24 @@ class SceneFile {
     return overrides;
   }
 
-  void append(Scene part, const std::vector<std::uint32_t>& overrides) {
-    std::vector<std::uint32_t> numbers(overrides);
+  /// Numbers in the scene of a part's materials.
+  std::vector<std::uint32_t> take_materials(Scene& part, std::vector<std::uint32_t> numbers) {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (numbers[i] != kOwn) continue;
       numbers[i] = static_cast<std::uint32_t>(scene_.materials.size());
       scene_.materials.push_back(std::move(part.materials[i]));
     }
+    return numbers;
+  }
+
+  void append(Scene part, const std::vector<std::uint32_t>& overrides, bool absent) {
+    const std::vector<std::uint32_t> numbers = take_materials(part, overrides);
     const auto first_object = static_cast<std::uint32_t>(scene_.objects.size());
     std::ranges::move(part.objects, std::back_inserter(scene_.objects));
     for (Surface& surface : part.surfaces) {
       surface.material = numbers[surface.material];
       surface.object += first_object;
-      scene_.surfaces.push_back(std::move(surface));
+      (absent ? scene_.absent : scene_.surfaces).push_back(std::move(surface));
     }
     std::ranges::move(part.warnings, std::back_inserter(scene_.warnings));
   }
@@ -354,6 +512,8 @@ class SceneFile {
   Emission emission_;
   bool keep_faults_;
   Scene scene_;
+  std::vector<Event> events_;
+  std::vector<CameraAt> camera_path_;
   std::map<std::string, std::uint32_t> material_numbers_;
   std::map<std::uint32_t, std::uint32_t> named_;  // of the object being read: its material → the file's
 };
@@ -361,7 +521,21 @@ class SceneFile {
 }  // namespace
 
 Scene read_scene_file(const std::filesystem::path& path, Emission emission, bool keep_faults) {
-  return SceneFile(path, emission, keep_faults).read();
+  return SceneFile(path, emission, keep_faults).read().scene;
+}
+
+DynamicScene read_dynamic_scene(const std::filesystem::path& path, Emission emission) {
+  DynamicScene read = SceneFile(path, emission, false).read();
+  refuse_bad_extents(read.scene, path);
+  EditedScene edited(read.scene);
+  for (const Event& event : read.events) {
+    try {
+      edited.apply(event.edit);
+    } catch (const InvalidEdit& wrong) {
+      throw InputError(path.string(), event.line, wrong.what());
+    }
+  }
+  return read;
 }
 
 }  // namespace exitance

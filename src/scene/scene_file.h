@@ -10,6 +10,11 @@
 //   up = [0, 0, 1]                  # this unless said otherwise
 //   vertical_fov = 40               # degrees, likewise
 //
+//   [mesh]                          # optional: how surfaces are cut unless options say otherwise
+//   patch_size = 0.3                # longest edge of a patch [m]; 0: surfaces as they are
+//   elements = 2                    # along the edge of a patch
+//   small_patch = 0.02              # patches of this area [m²] or less are one element each
+//
 //   [[material]]
 //   name = "white"
 //   rho = 0.7                       # or one number a band: [0.7, 0.7, 0.6]
@@ -32,13 +37,29 @@
 //   flip = true                     # turns every face over; then
 //   two_sided = true                # adds every face again, turned over, right after itself
 //   obstruction_only = true         # hides, but neither emits nor receives
+//   absent = true                   # is not there until an event adds it
+//
+//   [[event]]                       # what happens to an object; in order of time, one event an object and time
+//   time = 1
+//   object = "table"
+//   operation = "move"              # add, remove, move, reshape, change, select, deselect (edit.h)
+//   scale, rotate, translate        # add, move: where it stands, as in [[object]] and from what stands there, about
+//   pivot = [x, y, z]               # this point; the origin unless given
+//   mesh, polygons or box, …        # reshape: what it becomes, with the keys of [[object]]
+//   material = "red"                # change: of all its surfaces
+//   materials = {wood = "red"}      # change: of those of some materials
+//
+//   [[camera_path]]                 # where the observer is at some times, evenly moving in between; keys of [camera]
+//   time = 0
 //
 // Every [[object]] is one object of the scene, a furnished room as many as it has. Materials have one number a band;
 // numbers are repeated to the length of the lists, so that a scene with numbers only has one band. Keys that are not
 // known are errors.
 
 #include <filesystem>
+#include <vector>
 
+#include "src/scene/edit.h"
 #include "src/scene/material_check.h"
 #include "src/scene/scene.h"
 
@@ -48,5 +69,16 @@ namespace exitance {
 /// meshes are mended (face_mending.h); polygons written in the file that cross themselves are refused, unless
 /// keep_faults. Throws InputError.
 Scene read_scene_file(const std::filesystem::path& path, Emission emission, bool keep_faults);
+
+/// A scene and what happens to it.
+struct DynamicScene {
+  Scene scene;
+  std::vector<Event> events;  ///< in order of time
+  std::vector<CameraAt> camera_path;
+};
+
+/// Reads a scene file with its events, and checks them by applying all of them. Throws InputError, for an event that
+/// has no meaning (InvalidEdit) with its line.
+DynamicScene read_dynamic_scene(const std::filesystem::path& path, Emission emission);
 
 }  // namespace exitance

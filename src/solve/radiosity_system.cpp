@@ -55,6 +55,11 @@ void check_row(const FormFactorMatrix& F, std::size_t i) {
 
 }  // namespace
 
+std::vector<double> luminance_weights(std::uint32_t bands) {
+  if (bands == 3) return {0.2126, 0.7152, 0.0722};
+  return std::vector<double>(bands, 1.0);
+}
+
 void check(const Discretisation& d) {
   require(!d.element_first.empty() && d.element_first.front() == 0 && d.element_first.back() == d.elements(),
           "the elements of the patches must cover all elements");

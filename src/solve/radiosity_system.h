@@ -12,6 +12,9 @@
 
 namespace exitance {
 
+/// What counts of each band: of three the luminance 0.2126 R + 0.7152 G + 0.0722 B, of any other number the sum.
+std::vector<double> luminance_weights(std::uint32_t bands);
+
 /// Thrown when something is no radiosity system: sizes that do not match, a reflectance outside [0, 1), a number that
 /// is not finite, or form factors of a row that sum to more than 1 by more than their errors.
 class InvalidSystem : public std::invalid_argument {

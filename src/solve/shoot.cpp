@@ -17,18 +17,13 @@ namespace {
 
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
-std::vector<double> importance_of_bands(std::uint32_t bands) {
-  if (bands == 3) return {0.2126, 0.7152, 0.0722};
-  return std::vector<double>(bands, 1.0);
-}
-
 // What has been shot and received so far.
 class Shooting {
  public:
   explicit Shooting(const Discretisation& d)
       : d_(d),
         area_(patch_areas(d)),
-        importance_(importance_of_bands(d.bands)),
+        importance_(luminance_weights(d.bands)),
         largest_rho_(d.bands),
         F_(d.elements()),
         F_error_(d.elements()),

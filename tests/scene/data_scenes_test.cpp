@@ -10,6 +10,7 @@
 #include "src/scene/patch_mesh.h"
 #include "src/scene/reader.h"
 #include "src/scene/scene_check.h"
+#include "src/scene/scene_file.h"
 
 namespace exitance {
 namespace {
@@ -71,6 +72,34 @@ TEST(DataScenes, BoxOnFloorHasElevenPolygonsAndSquarePatches) {
   EXPECT_EQ(make_patch_mesh(scene, soup, {1.0 / 3, 1}).patches.size(), 522u);
   EXPECT_GT(make_patch_mesh(scene, soup, {0.333333, 1}).patches.size(), 522u) << "a size is never exceeded";
   EXPECT_EQ(make_patch_mesh(scene, soup, {1.0 / 7, 1}).patches.size(), 2842u);
+}
+
+/// Patches and elements of a scene cut as it says itself.
+std::pair<std::size_t, std::size_t> counts_of(const Scene& scene) {
+  MeshOptions options{scene.mesh.patch_size, scene.mesh.elements_per_edge};
+  options.small_patch = scene.mesh.small_patch;
+  const PolygonSoup soup = make_soup(scene);
+  const PatchMesh mesh = make_patch_mesh(scene, soup, options);
+  return {mesh.patches.size(), mesh.elements.size()};
+}
+
+void expect_counts_within_two_percent(const char* name, double patches, double elements) {
+  const DynamicScene given =
+      read_dynamic_scene(std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / name, Emission::exitance);
+  EditedScene edited(given.scene);
+  for (std::size_t k = 0; k <= given.events.size(); ++k) {
+    if (k > 0) edited.apply(given.events[k - 1].edit);
+    if (k > 1) continue;  // without what comes and goes, and with it
+    EXPECT_TRUE(is_closed(edited.scene())) << name << " after event " << k;
+    const auto [p, e] = counts_of(edited.scene());
+    EXPECT_NEAR(static_cast<double>(p), patches, 0.02 * patches) << name << " after event " << k;
+    EXPECT_NEAR(static_cast<double>(e), elements, 0.02 * elements) << name << " after event " << k;
+  }
+}
+
+TEST(DataScenes, CubeAndRobotAreAsLargeAsInThePaper) {
+  expect_counts_within_two_percent("cube.toml", 450, 1750);
+  expect_counts_within_two_percent("robot.toml", 12700, 45900);
 }
 
 }  // namespace

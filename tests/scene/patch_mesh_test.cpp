@@ -455,11 +455,15 @@ TEST(PatchMesh, RefusesSenselessSizes) {
 TEST(PatchMesh, RefusesWhatWouldNotFitInMemory) {
   const Scene scene = scene_of({{square(0, 0, 1, 1), {}}, {square(1, 0, 2, 1), {}}});
   const PolygonSoup soup = make_soup(scene);
-  const std::uint64_t limit = 100'000'000;
-  EXPECT_EQ(make_patch_mesh(scene, soup, {0.01, 1, limit}).patches.size(), 20000u);
-  EXPECT_THROW(make_patch_mesh(scene, soup, {0.01, 7, limit}), LimitError);
+  const auto limited = [](double patch_size, std::uint32_t per_edge) {
+    MeshOptions options{patch_size, per_edge};
+    options.memory_limit = 100'000'000;
+    return options;
+  };
+  EXPECT_EQ(make_patch_mesh(scene, soup, limited(0.01, 1)).patches.size(), 20000u);
+  EXPECT_THROW(make_patch_mesh(scene, soup, limited(0.01, 7)), LimitError);
   try {
-    make_patch_mesh(scene, soup, {1e-4, 1, limit});
+    make_patch_mesh(scene, soup, limited(1e-4, 1));
     FAIL();
   } catch (const LimitError& refused) {
     EXPECT_THAT(refused.what(), testing::HasSubstr("2e+08 patches"));
@@ -476,8 +480,13 @@ TEST(PatchMesh, EstimatesItsMemory) {
       const PatchMesh mesh = make_patch_mesh(scene, soup, {0.02, per_edge});
       const std::uint64_t bytes = mesh.points.size() * sizeof(Vec3) + mesh.pieces.size() * sizeof(PatchPiece) +
                                   mesh.patches.size() * sizeof(Patch) + mesh.elements.size() * sizeof(Element);
-      EXPECT_THROW(make_patch_mesh(scene, soup, {0.02, per_edge, bytes}), LimitError) << per_edge;
-      EXPECT_NO_THROW(make_patch_mesh(scene, soup, {0.02, per_edge, 8 * bytes})) << per_edge;
+      const auto limited_to = [&](std::uint64_t limit) {
+        MeshOptions options{0.02, per_edge};
+        options.memory_limit = limit;
+        return options;
+      };
+      EXPECT_THROW(make_patch_mesh(scene, soup, limited_to(bytes)), LimitError) << per_edge;
+      EXPECT_NO_THROW(make_patch_mesh(scene, soup, limited_to(8 * bytes))) << per_edge;
     }
   }
 }

@@ -169,7 +169,7 @@ TEST_F(SceneFileTest, MistakesNameTheirLine) {
   EXPECT_THAT(error_of("[[object]\n"), HasSubstr("scene.toml:4: "));
   EXPECT_THAT(error_of("[[object]]\nbox = {min = [0,0,0], max = [1,1,1]}\ncolour = 3\n"),
               AllOf(HasSubstr("scene.toml:6: "), HasSubstr("\"colour\""), HasSubstr("two_sided")));
-  EXPECT_THAT(error_of("[[event]]\ntime = 1\n"), AllOf(HasSubstr("scene.toml:4: "), HasSubstr("\"event\"")));
+  EXPECT_THAT(error_of("[[happening]]\ntime = 1\n"), AllOf(HasSubstr("scene.toml:4: "), HasSubstr("\"happening\"")));
   EXPECT_THAT(error_of("[[object]]\nbox = {min = [0,0,0], max = [1,1,1]}\nflip = 1\n"),
               HasSubstr("scene.toml:6: \"flip\""));
   EXPECT_THAT(error_of("[[object]]\nbox = {min = [0,0], max = [1,1,1]}\n"), HasSubstr("scene.toml:5: "));

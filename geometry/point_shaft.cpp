@@ -1,0 +1,104 @@
+#include "geometry/point_shaft.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace exitance {
+
+PointShaft::PointShaft(const PolygonSoup& soup) : soup_(soup) {}
+
+void PointShaft::reset(const Receiver& receiver, const ShaftEnd& shooter) {
+  receiver_ = receiver;
+  shooter_ = shooter;
+  loop_.assign(shooter.loop.begin(), shooter.loop.end());
+  const Facet& of_shooter = soup_.facets()[shooter.facet];
+  if (loop_.empty()) {
+    for (const Corner& c : soup_.corners(of_shooter)) loop_.push_back(c.at);
+  }
+  half_spaces_.clear();
+  box_ = {};
+  box_.extend(receiver_.point);
+  for (const Vec3& p : loop_) box_.extend(p);
+  empty_ = true;
+  if (shooter.facet == receiver.facet) return;
+  if (side_of(of_shooter.plane, receiver_.point, counts_) <= 0) return;
+  const bool on_facet = receiver_.facet != kNone;
+  const auto above = [&](const Vec3& p) {
+    return !on_facet || side_of(soup_.facets()[receiver_.facet].plane, p, counts_) > 0;
+  };
+  if (std::none_of(loop_.begin(), loop_.end(), above)) return;
+  empty_ = false;
+
+  Box all = box_;
+  all.extend(soup_.index().bounds());
+  const Vec3 size = all.upper - all.lower;
+  region_.clear(receiver_.point, 1.01 * (size.x + size.y + size.z));
+  region_.add(of_shooter.plane, 1);
+  if (on_facet) region_.add(soup_.facets()[receiver_.facet].plane, 1);
+  for (std::size_t k = 0; k < loop_.size(); ++k) {
+    const Vec3 &p = loop_[k], &q = loop_[k + 1 < loop_.size() ? k + 1 : 0];
+    if (p != q) region_.add(q, p, receiver_.point);
+  }
+}
+
+std::span<const HalfSpace> PointShaft::half_spaces() {
+  if (half_spaces_.empty()) {
+    for (std::size_t i = 0; i < region_.count(); ++i) {
+      const HalfSpace h = region_.half_space(i, soup_.extent());
+      if (std::isfinite(h.offset)) half_spaces_.push_back(h);
+    }
+  }
+  return half_spaces_;
+}
+
+bool PointShaft::enters(std::uint32_t facet) {
+  if (empty_ || facet == receiver_.facet || facet == shooter_.facet) return false;
+  const Facet& f = soup_.facets()[facet];
+  const auto corners = soup_.corners(f);
+  const auto at_sight = region_.meets_at_sight(corners, counts_);
+  return at_sight ? *at_sight : region_.meets(corners, f.plane.points, counts_);
+}
+
+bool PointShaft::blocks(std::uint32_t facet) {
+  if (empty_ || facet == receiver_.facet || facet == shooter_.facet) return false;
+  const Facet& f = soup_.facets()[facet];
+  const int side = side_of(f.plane, receiver_.point, counts_);
+  if (side == 0) return false;
+  for (const Vec3& p : loop_) {
+    if (side_of(f.plane, p, counts_) != -side) return false;
+  }
+  const auto corners = soup_.corners(f);
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Vec3 &u = corners[k].at, &v = corners[k + 1 < corners.size() ? k + 1 : 0].at;
+    for (const Vec3& p : loop_) {
+      // Lines that pass the facet's edge on the inner side, as seen from in front of it.
+      if (orientation(u, v, receiver_.point, p, counts_) == side) return false;
+    }
+  }
+  return true;
+}
+
+bool PointShaft::blocks(const Shell& shell) {
+  if (empty_) return false;
+  const auto in_front = [&](const Vec3& v) {
+    return std::any_of(shell.facets.begin(), shell.facets.end(),
+                       [&](std::uint32_t f) { return side_of(soup_.facets()[f].plane, v, counts_) > 0; });
+  };
+  if (!in_front(receiver_.point)) return false;
+  const auto meets = [&](const Vec3& p) {
+    if (!in_front(p)) return false;
+    return std::any_of(shell.facets.begin(), shell.facets.end(), [&](std::uint32_t f) {
+      const Facet& facet = soup_.facets()[f];
+      if (side_of(facet.plane, receiver_.point, counts_) <= 0 || side_of(facet.plane, p, counts_) >= 0) return false;
+      const auto corners = soup_.corners(facet);
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        const Vec3 &u = corners[k].at, &v = corners[k + 1 < corners.size() ? k + 1 : 0].at;
+        if (orientation(u, v, receiver_.point, p, counts_) > 0) return false;
+      }
+      return true;
+    });
+  };
+  return std::all_of(loop_.begin(), loop_.end(), meets);
+}
+
+}  // namespace exitance

@@ -1,0 +1,61 @@
+#pragma once
+// The shaft from a sample point to a convex polygon: all that can stand between, exactly.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/open_region.h"
+#include "geometry/shaft.h"
+#include "geometry/view.h"
+
+namespace exitance {
+
+/// The open pyramid over a polygon (the shooter) with its apex in a point (the receiver): the lines without their end
+/// points from the receiver to interior points of the shooter, above the receiver's plane and in front of the
+/// shooter's. Degenerate cases:
+///  - a receiver in the shooter's plane or behind it, or a shooter nothing of which lies above the receiver's plane:
+///    empty, nothing enters;
+///  - the points of a piece of a facet are rounded: the pyramid is that of the rounded points;
+///  - a receiver on no facet has no plane of its own.
+///
+/// Not for several threads at once. The soup must live as long.
+class PointShaft {
+ public:
+  explicit PointShaft(const PolygonSoup& soup);
+  PointShaft(const PointShaft&) = delete;  // planes point to its points
+  PointShaft& operator=(const PointShaft&) = delete;
+
+  /// Goes on with other ends. The loop is copied.
+  void reset(const Receiver& receiver, const ShaftEnd& shooter);
+
+  bool is_empty() const { return empty_; }
+
+  /// Whether the relative interior of a facet other than the receiver's own meets the open pyramid, exactly. One in the
+  /// plane of either end does not.
+  bool enters(std::uint32_t facet);
+
+  /// Whether every line from the receiver to the shooter meets the facet, exactly: then nothing of the shooter is seen.
+  bool blocks(std::uint32_t facet);
+
+  /// The same of a convex shell's solid, where no line starts or ends within it; false where one may.
+  bool blocks(const Shell& shell);
+
+  /// Half-spaces and a box that hold the pyramid, for searches.
+  std::span<const HalfSpace> half_spaces();
+  const Box& box() const { return box_; }
+
+ private:
+  const PolygonSoup& soup_;
+  Receiver receiver_;
+  ShaftEnd shooter_;
+  std::vector<Vec3> loop_;
+  Vec3 size_of_all_;  ///< of the box around the soup
+  Box box_;
+  bool empty_ = true;
+  OpenRegion region_;
+  std::vector<HalfSpace> half_spaces_;
+  StageCounts counts_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,318 @@
+// exitance dynamic: the radiosity of a scene in which objects come, go, move and change.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tbb/global_control.h>
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/cli/console.h"
+#include "src/cli/interrupt.h"
+#include "src/cli/json_text.h"
+#include "src/cli/number_range.h"
+#include "src/cli/verbs.h"
+#include "src/dynamic/converged_reference.h"
+#include "src/dynamic/edit_session.h"
+#include "src/dynamic/trespass.h"
+#include "src/output/image.h"
+#include "src/output/mesh_faces.h"
+#include "src/output/process_memory.h"
+#include "src/output/result_folder.h"
+#include "src/output/vtk.h"
+#include "src/output/whole_file.h"
+#include "src/scene/input_error.h"
+#include "src/scene/scene_check.h"
+#include "src/scene/scene_file.h"
+
+namespace exitance {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+/// Form factors of a reference by gathering may take this share of the memory that is there, at this density of rows.
+constexpr double kShareOfMemory = 0.4, kDensity = 0.5;
+constexpr double kBytesAnEntry = 20;
+/// References by shots converge to this.
+constexpr double kReferenceTolerance = 1e-4;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// What each frame converges to: by gathering, or, where the matrix would not fit in memory, by a session of its own
+/// that works off everything.
+class References {
+ public:
+  References(const DynamicScene& scene, SessionOptions options, const DynamicRadiosity& state) {
+    const double entries = static_cast<double>(state.version().elements()) *
+                           static_cast<double>(state.version().patches()) * kDensity;
+    if (2 * entries * kBytesAnEntry < kShareOfMemory * static_cast<double>(available_memory_bytes())) return;
+    options.method = UpdateMethod::redistribute;
+    options.tolerance = kReferenceTolerance;
+    session_.emplace(scene.scene, options);
+  }
+  const char* method() const { return session_ ? "shots" : "gathering"; }
+
+  void apply(const Edit& edit) {
+    if (session_) session_->apply(edit);
+  }
+  /// Of the present frame; none where `stop` came first.
+  std::optional<std::vector<double>> find(const DynamicRadiosity& state, const std::function<bool()>& stop) {
+    if (!session_) return converged_reference(state);
+    Budget all;
+    all.interrupted = stop;
+    if (session_->work(all).interrupted) return std::nullopt;
+    return session_->solution().element_B();
+  }
+
+ private:
+  std::optional<EditSession> session_;
+};
+
+class Dynamic {
+ public:
+  explicit Dynamic(CLI::App& verb) {
+    verb.add_option("SCENE", path_, "Scene file (.toml) with events")->required();
+    verb.add_option("--method", method_,
+                    "scratch: progressive refinement from nothing after each edit; restart: from the previous solution; "
+                    "redistribute: radiosity redistribution")
+        ->check(CLI::IsMember({"scratch", "restart", "redistribute"}))
+        ->capture_default_str();
+    verb.add_option("--strategy", strategy_, "1: redistribute first, down to the threshold; 2: interleave")
+        ->check(CLI::IsMember({"1", "2"}))
+        ->capture_default_str();
+    verb.add_option("--threshold", options_.threshold, "Of strategy 1, share of the light sources' power")
+        ->check(number_between(0, 1))
+        ->capture_default_str();
+    verb.add_option("--importance", importance_, "How patches are ranked for redistribution")
+        ->check(CLI::IsMember({"estimated", "exact"}))
+        ->capture_default_str();
+    verb.add_option("--importance-points", options_.importance.points, "Points an object of estimated importance")
+        ->check(whole_number_between(1, 1000))
+        ->capture_default_str();
+    verb.add_option("--tolerance", options_.tolerance, "When a frame is done: bound of B's error relative to B max")
+        ->check(positive_number())
+        ->capture_default_str();
+    verb.add_option("--budget-shots", budget_shots_, "Most shots a frame after the first; 0: none")
+        ->check(whole_number_between(0));
+    verb.add_option("--budget-ms", budget_ms_, "Milliseconds a frame after the first; 0: none")->check(number_between(0));
+    verb.add_option("--replay", replay_, "frames.json of an earlier run whose numbers of shots to repeat");
+    verb.add_flag("--work-off", work_off_, "After the last event one more frame that works off all that was left");
+    verb.add_flag("!--no-reference", reference_, "Leave out the converged references, and with them the errors");
+    verb.add_flag("!--no-images", images_, "Leave out pictures and VTP files");
+    patch_size_ = verb.add_option("--patch-size", options_.mesh.patch_size, "Longest edge of a patch [m]")
+                      ->check(number_between(0));
+    elements_ = verb.add_option("--elements", options_.mesh.elements_per_edge, "Elements along the edge of a patch")
+                    ->check(whole_number_between(1, 65'535));
+    verb.add_option("--time-limit", time_limit_, "Seconds after which to end with what there is, exit code 4")
+        ->check(positive_number());
+    verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
+        ->check(whole_number_between(1, kMostThreads));
+    verb.add_option("-o,--output", folder_, "Folder for frames.json, frame_*.png and frame_*.vtp")->required();
+    verb.add_flag("--json", json_, "Print frames.json instead of a summary");
+    verb.footer(
+        "frames.json is a list: frame 0 is the scene before the first event, each other one follows the events of one\n"
+        "time. error and error_worst_1_percent are eq. 7 of George et al. (1990) over elements, against the converged\n"
+        "solution of that frame; null where there is no reference. Ctrl-C saves the frames so far, exit code 4.");
+  }
+
+  void run() {
+    start_ = Clock::now();
+    const std::size_t threads =
+        threads_ ? *threads_ : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    catch_interrupts();
+    if (budget_shots_.has_value() + budget_ms_.has_value() + !replay_.empty() > 1)
+      throw CLI::ValidationError("--budget-shots, --budget-ms, --replay", "only one of them can be given");
+    const DynamicScene given = read_dynamic_scene(path_, Emission::exitance);
+    for (const std::string& warning : given.scene.warnings) print_warning(warning);
+    if (given.events.empty()) print_warning(fmt::format("{}: has no [[event]]; there is one frame", path_));
+    read_replay();
+    ResultFolder folder(folder_);
+    draft_ = folder.draft();
+    set_options(given.scene);
+
+    EditSession session(given.scene, options_);
+    std::optional<References> references;
+    if (reference_) references.emplace(given, options_, session.solution());
+    frame(given, session, references, given.events.empty() ? 0 : std::min(0.0, given.events.front().time), {});
+    std::size_t next = 0;
+    while (next < given.events.size() && !stop()) {
+      const double time = given.events[next].time;
+      std::vector<std::string> edits;
+      for (; next < given.events.size() && given.events[next].time == time; ++next)
+        edits.push_back(apply(given.events[next], session, references));
+      frame(given, session, references, time, edits);
+    }
+    const double last = given.events.empty() ? 0 : given.events.back().time;
+    if (work_off_ && !stop()) frame(given, session, references, last, {"work off"});
+    write_whole_file(draft_ / "frames.json", [&](std::ostream& out) { out << frames_.dump(1) << '\n'; });
+    folder.publish();
+    print_results(json_ ? frames_.dump(1) + '\n' : summary_);
+    if (partial_) {
+      print_message(fmt::format("stopped in frame {}; the partial result was saved", frames_.size() - 1));
+      throw CLI::RuntimeError(limit_reached);
+    }
+  }
+
+ private:
+  bool stop() {
+    partial_ = partial_ || interrupted() || (time_limit_ && seconds_since(start_) > *time_limit_);
+    return partial_;
+  }
+
+  void set_options(const Scene& scene) {
+    static const std::map<std::string, UpdateMethod> kMethods = {{"scratch", UpdateMethod::scratch},
+                                                                 {"restart", UpdateMethod::restart},
+                                                                 {"redistribute", UpdateMethod::redistribute}};
+    options_.method = kMethods.at(method_);
+    options_.strategy = strategy_ == "1" ? Strategy::redistribute_first : Strategy::interleave;
+    options_.importance.kind =
+        importance_ == "exact" ? ImportanceOptions::Kind::exact : ImportanceOptions::Kind::estimated;
+    if (patch_size_->count() == 0) options_.mesh.patch_size = scene.mesh.patch_size;
+    if (elements_->count() == 0) {
+      options_.mesh.elements_per_edge = scene.mesh.elements_per_edge;
+      options_.mesh.small_patch = scene.mesh.small_patch;
+    }
+    options_.mesh.memory_limit = available_memory_bytes();
+  }
+
+  void read_replay() {
+    if (replay_.empty()) return;
+    const nlohmann::json frames = read_json(replay_);
+    if (!frames.is_array()) throw InputError(replay_, 0, "is no list of frames; name a frames.json");
+    for (const auto& frame : frames) {
+      if (!frame.is_object() || !frame.contains("shots") || !frame["shots"].is_number_unsigned())
+        throw InputError(replay_, 0, "a frame has no number of \"shots\"; name a frames.json");
+      replayed_.push_back(frame["shots"].get<std::uint64_t>());
+    }
+  }
+
+  std::string apply(const Event& event, EditSession& session, std::optional<References>& references) const {
+    session.apply(event.edit);
+    if (references) references->apply(event.edit);
+    for (const std::string& warning : find_trespass(session.scene(), session.solution().version(), event.edit.object))
+      print_warning(fmt::format("{}:{}: {}", path_, event.line, warning));
+    return fmt::format("{} {}", name_of(event.edit.operation), session.scene().scene().objects[event.edit.object].name);
+  }
+
+  Budget budget() {
+    Budget budget;
+    budget.interrupted = [this] { return stop(); };
+    const std::size_t number = frames_.size();
+    if (!replayed_.empty()) budget.shots = number < replayed_.size() ? replayed_[number] : 0;
+    if (number == 0 || last_) return budget;
+    budget.shots = budget_shots_ ? budget_shots_ : budget.shots;
+    if (budget_ms_) budget.seconds = *budget_ms_ / 1000;
+    return budget;
+  }
+
+  void frame(const DynamicScene& given, EditSession& session, std::optional<References>& references, double time,
+             const std::vector<std::string>& edits) {
+    last_ = !edits.empty() && edits.front() == "work off";
+    const SessionWork work = session.work(budget());
+    const DynamicRadiosity& state = session.solution();
+    const std::vector<double> B = state.element_B();
+    std::optional<ConvergenceError> error;
+    if (references && !partial_) {
+      if (const auto reference = references->find(state, [this] { return stop(); })) {
+        // Of the first frame nothing came before: what changed most is what is brightest.
+        error = convergence_error(state.version(), state.bands(), *reference, reference_before_, B);
+        reference_before_ = *reference;
+      }
+    }
+    Json frame;
+    frame["frame"] = frames_.size();
+    frame["time"] = time;
+    frame["edits"] = edits;
+    frame["method"] = method_;
+    frame["seconds"] = work.seconds;
+    frame["shots"] = work.propagations + work.redistributions;
+    frame["propagation_shots"] = work.propagations;
+    frame["redistribution_shots"] = work.redistributions;
+    frame["visibility_tests"] = work.propagation.visibility_tests + work.redistribution.visibility_tests;
+    frame["redistribution_tests"] = work.redistribution.visibility_tests;
+    frame["redistribution_tests_idle"] = work.redistribution.idle_tests;
+    frame["elements_kept_in_umbra"] = work.redistribution.kept;
+    frame["error"] = error ? Json(error->all) : Json(nullptr);
+    frame["error_worst_1_percent"] = error ? Json(error->worst_1_percent) : Json(nullptr);
+    frame["reference"] = error ? Json(references->method()) : Json(nullptr);
+    frame["error_bound"] = state.pending_changes() == 0 ? Json(state.error_bound()) : Json(nullptr);
+    frame["finished"] = work.finished;
+    frame["propagation_left"] = session.propagation_left();
+    Json log = Json::array();
+    double left = 0;
+    for (const PendingChange& change : session.log()) {
+      log.push_back({{"change", change.name},
+                     {"patches", change.patches},
+                     {"patch", change.patch},
+                     {"energy", change.largest_energy}});
+      left = std::max(left, change.largest_energy);
+    }
+    frame["redistribution_left"] = left;
+    frame["log"] = log;
+    frame["patches"] = state.version().present_patches();
+    frame["elements"] = state.version().present_elements();
+    frame["unit"] = given.scene.unit;
+    if (images_) draw(given, session, time, B);
+    summary_ += fmt::format("frame {:3}  {:>9.3f} s  {:5} + {:5} shots  error {}  of the 1 % {}  {}\n", frames_.size(),
+                            work.seconds, work.redistributions, work.propagations,
+                            error ? fmt::format("{:.3g}", error->all) : "-",
+                            error ? fmt::format("{:.3g}", error->worst_1_percent) : "-",
+                            fmt::format("{}", fmt::join(edits, ", ")));
+    frames_.push_back(std::move(frame));
+  }
+
+  void draw(const DynamicScene& given, const EditSession& session, double time, const std::vector<double>& B) const {
+    const SceneVersion& version = session.solution().version();
+    const Faces faces = faces_of(version.mesh(), version.soup());
+    const Discretisation d = session.solution().discretisation();
+    std::vector<std::uint8_t> emits(version.elements());
+    for (std::uint32_t e = 0; e < emits.size(); ++e) {
+      for (std::uint32_t b = 0; b < d.bands; ++b)
+        emits[e] = emits[e] != 0 || d.E[std::size_t{version.mesh().elements[e].patch} * d.bands + b] > 0;
+    }
+    const Camera camera = !given.camera_path.empty() ? camera_at(given.camera_path, time)
+                          : given.scene.camera       ? *given.scene.camera
+                                                     : default_camera(faces.points(), is_closed(given.scene));
+    const std::string name = fmt::format("frame_{:03}", frames_.size());
+    write_png(draft_ / (name + ".png"), render(faces, {d.bands, B, emits, {}}, camera));
+    VtkArray exitance{"B", given.scene.unit, {}, B};
+    if (d.bands == 3) exitance.components = {"R", "G", "B"};
+    for (std::uint32_t b = 0; d.bands != 1 && d.bands != 3 && b < d.bands; ++b)
+      exitance.components.push_back(fmt::format("band {}", b));
+    write_vtp(draft_ / (name + ".vtp"), faces, {&exitance, 1});
+  }
+
+  SessionOptions options_;
+  CLI::Option *patch_size_ = nullptr, *elements_ = nullptr;
+  std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", replay_, folder_;
+  std::optional<std::uint64_t> budget_shots_;
+  std::optional<double> budget_ms_, time_limit_;
+  std::optional<std::size_t> threads_;
+  bool work_off_ = false, reference_ = true, images_ = true, json_ = false;
+
+  Clock::time_point start_;
+  std::filesystem::path draft_;
+  std::vector<std::uint64_t> replayed_;
+  std::vector<double> reference_before_;
+  Json frames_ = Json::array();
+  std::string summary_;
+  bool partial_ = false, last_ = false;
+};
+
+}  // namespace
+
+void add_dynamic(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("dynamic", "Follow the radiosity of a scene through its events");
+  verb->callback([dynamic = std::make_shared<Dynamic>(*verb)] { dynamic->run(); });
+}
+
+}  // namespace exitance

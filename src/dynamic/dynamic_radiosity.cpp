@@ -1,0 +1,336 @@
+#include "src/dynamic/dynamic_radiosity.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/dynamic/importance.h"
+
+namespace exitance {
+
+DynamicRadiosity::DynamicRadiosity(std::shared_ptr<const SceneVersion> version, const Scene& scene)
+    : bands_(scene.bands), weights_(luminance_weights(scene.bands)) {
+  layers_.push_back({std::move(version), {}, {}, {}, {}});
+  fit_arrays();
+  for (std::uint32_t object = 0; object < this->version().objects(); ++object) set_materials(scene, object);
+}
+
+/// Numbers never shrink; what is new is 0.
+void DynamicRadiosity::fit_arrays() {
+  const std::size_t patches = version().patches() * bands_;
+  H_.resize(version().elements() * bands_);
+  rho_.resize(patches);
+  E_.resize(patches);
+  B_.resize(patches);
+  unshot_.resize(patches);
+  for (Layer& layer : layers_) layer.shot.resize(patches);
+}
+
+void DynamicRadiosity::set_materials(const Scene& scene, std::uint32_t object) {
+  const ObjectSlot& slot = version().slot(object);
+  for (std::uint32_t p = slot.patch_first; p < slot.patch_first + slot.patch_count; ++p) {
+    for (std::uint32_t b = 0; b < bands_; ++b) {
+      const std::size_t i = std::size_t{p} * bands_ + b;
+      E_[i] = rho_[i] = 0;
+      if (!slot.present) continue;
+      const Material& material = scene.materials[scene.surfaces[version().mesh().patches[p].surface].material];
+      E_[i] = material.E[b];
+      rho_[i] = material.rho[b];
+    }
+    refresh(p);
+  }
+}
+
+/// B and ΔB of a patch from what its elements have received.
+void DynamicRadiosity::refresh(std::uint32_t p) {
+  const bool present = version().object_of_patch(p) != SceneVersion::kVoid;
+  const Patch& patch = version().mesh().patches[p];
+  for (std::uint32_t b = 0; b < bands_; ++b) {
+    const std::size_t i = std::size_t{p} * bands_ + b;
+    if (!present) {
+      B_[i] = unshot_[i] = 0;
+      continue;
+    }
+    CompensatedSum power;
+    double area = 0;
+    for (std::uint32_t e = patch.element_first; e < patch.element_first + patch.element_count; ++e) {
+      const double a = version().mesh().elements[e].area;
+      power.add_product(a, H_[std::size_t{e} * bands_ + b].value());
+      area += a;
+    }
+    B_[i] = E_[i] + rho_[i] * (power.value() / area);
+    double left = B_[i];
+    const std::uint32_t object = version().object_of_patch(p);
+    for (const Layer& layer : layers_) {
+      if (!version().same_in(*layer.version, object)) continue;
+      left = (left - layer.shot[i].high()) - layer.shot[i].low();
+    }
+    unshot_[i] = left;
+  }
+}
+
+void DynamicRadiosity::receive(std::uint32_t element, double F, const double* amount) {
+  for (std::uint32_t b = 0; b < bands_; ++b) H_[std::size_t{element} * bands_ + b].add_product(F, amount[b]);
+}
+
+/// Ascending.
+void DynamicRadiosity::refresh_patches_of(const std::vector<std::uint32_t>& elements) {
+  std::vector<std::uint32_t> patches;
+  for (const std::uint32_t e : elements) {
+    const std::uint32_t p = version().mesh().elements[e].patch;
+    if (patches.empty() || patches.back() != p) patches.push_back(p);
+  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), 64), [&](const auto& some) {
+    for (std::size_t k = some.begin(); k < some.end(); ++k) refresh(patches[k]);
+  });
+}
+
+double DynamicRadiosity::luminance_of(const double* values) const {
+  double sum = 0;
+  for (std::uint32_t b = 0; b < bands_; ++b) sum += weights_[b] * std::fabs(values[b]);
+  return sum;
+}
+
+bool DynamicRadiosity::is_zero(const Layer& layer, std::uint32_t patch) const {
+  for (std::uint32_t b = 0; b < bands_; ++b) {
+    const CompensatedSum& s = layer.shot[std::size_t{patch} * bands_ + b];
+    if (s.high() != 0 || s.low() != 0) return false;
+  }
+  return true;
+}
+
+void DynamicRadiosity::drop_empty_layers() {
+  const auto is_empty = [&](const Layer& layer) {
+    if (&layer == &layers_.back()) return false;
+    return std::ranges::all_of(layer.shot, [](const CompensatedSum& s) { return s.high() == 0 && s.low() == 0; });
+  };
+  std::erase_if(layers_, is_empty);
+}
+
+void DynamicRadiosity::change_geometry(std::shared_ptr<const SceneVersion> next, const Scene& scene,
+                                       std::uint32_t object, const std::string& name) {
+  // What the object received where it was is gone with it.
+  const ObjectSlot was = version().slot(object);
+  std::fill_n(H_.begin() + static_cast<std::ptrdiff_t>(std::size_t{was.element_first} * bands_),
+              std::size_t{was.element_count} * bands_, CompensatedSum{});
+  layers_.back().name = name;
+  layers_.push_back({std::move(next), {}, {}, {}, {}});
+  fit_arrays();
+  drop_empty_layers();
+  for (std::size_t k = 0; k + 1 < layers_.size(); ++k) {
+    layers_[k].to_present = std::make_shared<const VersionDifference>(layers_[k].version, layers_.back().version);
+    layers_[k].importance.reset();
+  }
+  for (std::uint32_t p = was.patch_first; p < was.patch_first + was.patch_count; ++p) {
+    for (std::uint32_t b = 0; b < bands_; ++b) E_[std::size_t{p} * bands_ + b] = rho_[std::size_t{p} * bands_ + b] = 0;
+    refresh(p);
+  }
+  set_materials(scene, object);
+}
+
+void DynamicRadiosity::change_materials(const Scene& scene, std::uint32_t object) {
+  set_materials(scene, object);
+}
+
+void DynamicRadiosity::start_over() {
+  layers_.erase(layers_.begin(), layers_.end() - 1);
+  std::ranges::fill(layers_.back().shot, CompensatedSum{});
+  std::ranges::fill(H_, CompensatedSum{});
+  for (std::uint32_t p = 0; p < version().patches(); ++p) refresh(p);
+}
+
+DynamicShot DynamicRadiosity::propagate(std::uint32_t patch) {
+  DynamicShot shot{DynamicShot::Kind::propagation, patch, 0, {}};
+  const std::vector<double> amount(unshot_.begin() + static_cast<std::ptrdiff_t>(std::size_t{patch} * bands_),
+                                   unshot_.begin() + static_cast<std::ptrdiff_t>((std::size_t{patch} + 1) * bands_));
+  const auto n = static_cast<std::uint32_t>(version().elements());
+  std::vector<double> F(n);
+  std::vector<std::uint8_t> asked(n);
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n, 128), [&](const auto& some) {
+    for (std::uint32_t e = some.begin(); e < some.end(); ++e) {
+      if (!version().has_element(e) || version().faces_away(e, patch)) continue;
+      asked[e] = 1;
+      F[e] = version().form_factor(e, patch).F;
+      if (F[e] != 0) receive(e, F[e], amount.data());
+    }
+  });
+  std::vector<std::uint32_t> lit;
+  for (std::uint32_t e = 0; e < n; ++e) {
+    shot.work.visibility_tests += asked[e];
+    if (F[e] == 0) continue;
+    lit.push_back(e);
+    const std::size_t p = std::size_t{version().mesh().elements[e].patch} * bands_;
+    for (std::uint32_t b = 0; b < bands_; ++b)
+      shot.power += weights_[b] * version().mesh().elements[e].area * rho_[p + b] * F[e] * std::fabs(amount[b]);
+  }
+  for (std::uint32_t b = 0; b < bands_; ++b) layers_.back().shot[std::size_t{patch} * bands_ + b].add(amount[b]);
+  refresh_patches_of(lit);
+  refresh(patch);
+  return shot;
+}
+
+DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t patch, VersionDifference::Search search) {
+  DynamicShot shot{DynamicShot::Kind::redistribution, patch, 0, {}};
+  Layer& layer = layers_[change];
+  const VersionDifference& difference = *layer.to_present;
+  const std::vector<FormFactorChange> changes = difference.column(patch, search, shot.work);
+  CompensatedSum* const past = layer.shot.data() + std::size_t{patch} * bands_;
+  std::vector<double> high(bands_), low(bands_);
+  for (std::uint32_t b = 0; b < bands_; ++b) {
+    high[b] = past[b].high();
+    low[b] = past[b].low();
+    past[b] = {};
+  }
+  std::vector<std::uint32_t> touched;
+  for (const FormFactorChange& c : changes) {
+    // Both by themselves: H takes back to the last digit what it was given.
+    for (const double* amount : {high.data(), low.data()}) {
+      receive(c.element, -c.before, amount);
+      receive(c.element, c.after, amount);
+    }
+    touched.push_back(c.element);
+    const std::size_t p = std::size_t{version().mesh().elements[c.element].patch} * bands_;
+    for (std::uint32_t b = 0; b < bands_; ++b)
+      shot.power += weights_[b] * version().mesh().elements[c.element].area * rho_[p + b] *
+                    std::fabs((c.after - c.before) * high[b]);
+  }
+  if (difference.keeps(patch)) {
+    for (std::uint32_t b = 0; b < bands_; ++b) {
+      CompensatedSum& now = layers_.back().shot[std::size_t{patch} * bands_ + b];
+      now.add(high[b]);
+      now.add(low[b]);
+    }
+  }
+  refresh_patches_of(touched);
+  refresh(patch);
+  drop_empty_layers();
+  return shot;
+}
+
+double DynamicRadiosity::redistribution_energy(std::size_t change, std::uint32_t patch) const {
+  const Layer& layer = layers_[change];
+  double sum = 0;
+  for (std::uint32_t b = 0; b < bands_; ++b)
+    sum += weights_[b] * std::fabs(layer.shot[std::size_t{patch} * bands_ + b].value());
+  return sum * (*layer.importance)[patch];
+}
+
+bool DynamicRadiosity::has_shot(std::uint32_t patch) const {
+  return !is_zero(layers_.back(), patch);
+}
+
+bool DynamicRadiosity::has_to_redistribute(std::size_t change, std::uint32_t patch) const {
+  return !is_zero(layers_[change], patch);
+}
+
+PendingChange DynamicRadiosity::pending(std::size_t change) const {
+  PendingChange result{layers_[change].name, 0, 0, 0};
+  for (std::uint32_t p = 0; p < version().patches(); ++p) {
+    if (!has_to_redistribute(change, p)) continue;
+    ++result.patches;
+    if (!layers_[change].importance) continue;
+    const double energy = redistribution_energy(change, p);
+    if (energy > result.largest_energy) {
+      result.largest_energy = energy;
+      result.patch = p;
+    }
+  }
+  return result;
+}
+
+DynamicRadiosity::Strongest DynamicRadiosity::strongest() const {
+  Strongest found;
+  for (std::uint32_t p = 0; p < version().patches(); ++p) {
+    const double energy = version().mesh().patches[p].area * luminance_of(unshot_.data() + std::size_t{p} * bands_);
+    if (energy > found.energy) found = {p, energy};
+  }
+  return found;
+}
+
+DynamicRadiosity::Strongest DynamicRadiosity::strongest_of(std::uint32_t object) const {
+  Strongest found;
+  const ObjectSlot& slot = version().slot(object);
+  for (std::uint32_t p = slot.patch_first; slot.present && p < slot.patch_first + slot.patch_count; ++p) {
+    if (luminance_of(E_.data() + std::size_t{p} * bands_) == 0) continue;
+    const double energy = version().mesh().patches[p].area * luminance_of(unshot_.data() + std::size_t{p} * bands_);
+    if (energy > found.energy) found = {p, energy};
+  }
+  return found;
+}
+
+std::vector<double> DynamicRadiosity::importance_of(const VersionDifference& difference) const {
+  switch (importance_.kind) {
+    case ImportanceOptions::Kind::exact:
+      return exact_importance(difference);
+    case ImportanceOptions::Kind::estimated:
+      return estimated_importance(difference, importance_.points);
+    case ImportanceOptions::Kind::total:
+      break;
+  }
+  std::vector<double> areas;
+  for (const Patch& patch : version().mesh().patches) areas.push_back(patch.area);
+  return areas;
+}
+
+DynamicRadiosity::StrongestChange DynamicRadiosity::strongest_change() {
+  StrongestChange found;
+  for (std::size_t k = 0; k + 1 < layers_.size(); ++k) {
+    Layer& layer = layers_[k];
+    if (!layer.importance) {
+      layer.importance = std::make_shared<const std::vector<double>>(importance_of(*layer.to_present));
+    }
+    for (std::uint32_t p = 0; p < version().patches(); ++p) {
+      if (!has_to_redistribute(k, p)) continue;
+      const double energy = redistribution_energy(k, p);
+      if (energy > found.energy) found = {k, p, energy};
+    }
+  }
+  return found;
+}
+
+double DynamicRadiosity::error_bound() const {
+  std::vector<double> largest_rho(bands_), left(bands_), largest_B(bands_);
+  for (std::size_t i = 0; i < B_.size(); ++i) {
+    const std::size_t b = i % bands_;
+    largest_rho[b] = std::max(largest_rho[b], rho_[i]);
+    left[b] = std::max(left[b], std::fabs(unshot_[i]));
+    largest_B[b] = std::max(largest_B[b], std::fabs(B_[i]));
+  }
+  double bound = 0;
+  for (std::uint32_t b = 0; b < bands_; ++b) {
+    if (left[b] > 0) bound = std::max(bound, left[b] / (1 - largest_rho[b]) / largest_B[b]);
+  }
+  return bound;
+}
+
+std::vector<double> DynamicRadiosity::element_B() const {
+  std::vector<double> B(H_.size());
+  for (std::uint32_t e = 0; e < version().elements(); ++e) {
+    if (!version().has_element(e)) continue;
+    const std::size_t p = std::size_t{version().mesh().elements[e].patch} * bands_;
+    for (std::uint32_t b = 0; b < bands_; ++b)
+      B[std::size_t{e} * bands_ + b] = E_[p + b] + rho_[p + b] * H_[std::size_t{e} * bands_ + b].value();
+  }
+  return B;
+}
+
+double DynamicRadiosity::power_of_sources() const {
+  double power = 0;
+  for (std::uint32_t p = 0; p < version().patches(); ++p)
+    power += version().mesh().patches[p].area * luminance_of(E_.data() + std::size_t{p} * bands_);
+  return power;
+}
+
+Discretisation DynamicRadiosity::discretisation() const {
+  Discretisation d;
+  d.bands = bands_;
+  d.rho = rho_;
+  d.E = E_;
+  for (const Patch& patch : version().mesh().patches) d.element_first.push_back(patch.element_first + patch.element_count);
+  for (const Element& element : version().mesh().elements) d.element_area.push_back(element.area);
+  return d;
+}
+
+}  // namespace exitance

@@ -1,0 +1,156 @@
+#pragma once
+// A radiosity solution in a scene that changes: what has been shot, under which version of the scene, and what is to be
+// redistributed (George, Sillion and Greenberg, "Radiosity redistribution for dynamic environments", IEEE CG&A 1990).
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "src/dynamic/version_difference.h"
+#include "src/scene/edit.h"
+#include "src/solve/compensated.h"
+#include "src/solve/radiosity_system.h"
+
+namespace exitance {
+
+/// How patches are ranked for redistribution: by the energy that they have shot towards what changed.
+struct ImportanceOptions {
+  enum class Kind : std::uint8_t {
+    total,     ///< by all energy that they have shot, wherever it went
+    exact,     ///< by the form factors from all elements of the changed objects, as they were and as they are
+    estimated  ///< by those of points in them, facing each patch (importance.h)
+  };
+  Kind kind = Kind::estimated;
+  std::uint32_t points = 1;  ///< of estimated: points an object, ≥ 1
+};
+
+/// One shot, and what it took.
+struct DynamicShot {
+  enum class Kind : std::uint8_t { propagation, redistribution };
+  Kind kind = Kind::propagation;
+  std::uint32_t patch = 0;
+  double power = 0;  ///< Σ A ρ |ΔF| |what was shot|, luminance [W or lm]: what it moved
+  ChangeWork work;
+};
+
+/// What has been shot before a change and is still to be redistributed: an entry of the paper's log.
+struct PendingChange {
+  std::string name;            ///< what changed then
+  std::size_t patches = 0;     ///< that have yet to redistribute what they shot before
+  std::uint32_t patch = 0;     ///< the one with the most energy left to redistribute
+  double largest_energy = 0;   ///< its, as it is ranked [W or lm]
+};
+
+/// The state of a solution. At any time, for every element i that is there,
+///
+///   B_i = E_i + ρ_i H_i,   H_i = Σ_v Σ_j F_ij^v S_j^v
+///
+/// where S_j^v is what patch j has shot by the form factors of version v of the scene. A propagation shot of patch j
+/// adds its unshot ΔB_j to S_j by the present version. An edit of the geometry makes a new version. A redistribution
+/// shot of j moves S_j^v from an older version to the present one: H_i changes by (F_ij^now − F_ij^v) S_j^v, for the
+/// elements for which the two differ. That is R_i of eq. 5 with B_j − ΔB_j for B_j, as what had not been shot when the
+/// change came needs no redistribution; energy that is shot after it is not redistributed either. When all of S is of
+/// the present version and nothing is unshot, B solves it as if it had been solved from scratch.
+///
+/// Old versions are the log of changes: whatever was interrupted is kept in them and can be worked off later. Several
+/// changes in between become one: a patch is moved from the version that it shot in to the present one at once. When a
+/// changed object has itself shot, its patches of the old version take that back as a whole (negative energy); its
+/// elements begin anew. Where the paper's text shoots ρ_j F_ij^Δt B_j, eq. 5 needs ρ_i; where Figure 2 multiplies F^Δt,
+/// which is negative in a shadow, by −1, it means its magnitude.
+///
+/// Copies are independent and share versions. Any number of threads gives the same bits.
+class DynamicRadiosity {
+ public:
+  /// Nothing has been shot.
+  DynamicRadiosity(std::shared_ptr<const SceneVersion> version, const Scene& scene);
+
+  const SceneVersion& version() const { return *layers_.back().version; }
+  std::shared_ptr<const SceneVersion> shared_version() const { return layers_.back().version; }
+  std::uint32_t bands() const { return bands_; }
+
+  /// The geometry of an object is now that of a version made from the present one; scene: as it is now. Its elements
+  /// begin anew.
+  void change_geometry(std::shared_ptr<const SceneVersion> version, const Scene& scene, std::uint32_t object,
+                       const std::string& name);
+  /// Reflectances and emissions of an object are now those of the scene: a correction of the radiosity of its patches,
+  /// which is propagated; nothing is redistributed.
+  void change_materials(const Scene& scene, std::uint32_t object);
+  /// Forgets all that was shot.
+  void start_over();
+
+  /// Shoots all of a patch's unshot radiosity.
+  DynamicShot propagate(std::uint32_t patch);
+  /// Redistributes what a patch shot in an older version. REQUIRES: change < pending_changes().
+  DynamicShot redistribute(std::size_t change, std::uint32_t patch, VersionDifference::Search search);
+
+  /// The oldest first; all patches of a change have been moved when it is gone.
+  std::size_t pending_changes() const { return layers_.size() - 1; }
+  PendingChange pending(std::size_t change) const;
+
+  /// Of a pending change, by patch: [m²] power that reaches what changed, of the unit exitance that the patch has shot;
+  /// the patch's own area where it is to take back all. Computed when first asked for.
+  void set_importance(const ImportanceOptions& options) { importance_ = options; }
+  /// What decides the order: the luminance of what a patch has shot times its importance [W or lm].
+  double redistribution_energy(std::size_t change, std::uint32_t patch) const;
+  bool has_shot(std::uint32_t patch) const;  ///< by the present version
+  bool has_to_redistribute(std::size_t change, std::uint32_t patch) const;
+
+  /// The patch with the most to propagate: area times |ΔB|, luminance [W or lm]; of equals the first.
+  struct Strongest {
+    std::uint32_t patch = 0;
+    double energy = 0;
+  };
+  Strongest strongest() const;
+  Strongest strongest_of(std::uint32_t object) const;
+  /// The one with the most to redistribute, and the change. energy −1: none has anything.
+  struct StrongestChange {
+    std::size_t change = 0;
+    std::uint32_t patch = 0;
+    double energy = -1;
+  };
+  StrongestChange strongest_change();
+
+  /// Bound of ‖B − B*‖∞ / max B for patches, of the worst band, when no change is pending.
+  double error_bound() const;
+
+  /// B and ΔB by patch and band. 0 where a patch is not there.
+  const std::vector<double>& patch_B() const { return B_; }
+  const std::vector<double>& unshot() const { return unshot_; }
+  /// B by element and band, 0 where an element is not there.
+  std::vector<double> element_B() const;
+  double power_of_sources() const;  ///< Σ A E, luminance
+
+  /// Areas, reflectances and emissions of what is there; black where nothing is.
+  Discretisation discretisation() const;
+
+ private:
+  struct Layer {
+    std::shared_ptr<const SceneVersion> version;
+    std::string name;                 ///< of the change that ended it
+    std::vector<CompensatedSum> shot;  ///< by patch and band
+    // Of all but the present one:
+    std::shared_ptr<const VersionDifference> to_present;
+    std::shared_ptr<const std::vector<double>> importance;  ///< by patch
+  };
+
+  void fit_arrays();
+  void set_materials(const Scene& scene, std::uint32_t object);
+  void refresh(std::uint32_t patch);
+  void receive(std::uint32_t element, double F, const double* amount);
+  void refresh_patches_of(const std::vector<std::uint32_t>& elements);
+  void drop_empty_layers();
+  std::vector<double> importance_of(const VersionDifference& difference) const;
+  double luminance_of(const double* values) const;
+  bool is_zero(const Layer& layer, std::uint32_t patch) const;
+
+  std::uint32_t bands_;
+  std::vector<double> weights_;     // of bands
+  std::vector<Layer> layers_;       // the present one last
+  std::vector<CompensatedSum> H_;   // by element and band
+  std::vector<double> rho_, E_;     // by patch and band
+  std::vector<double> B_, unshot_;  // by patch and band
+  ImportanceOptions importance_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,152 @@
+#include "src/dynamic/edit_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace exitance {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void count(const DynamicShot& shot, SessionWork& work) {
+  if (shot.kind == DynamicShot::Kind::propagation) {
+    ++work.propagations;
+    work.propagation += shot.work;
+  } else {
+    ++work.redistributions;
+    work.redistribution += shot.work;
+  }
+}
+
+}  // namespace
+
+EditSession::EditSession(Scene scene, const SessionOptions& options)
+    : options_(options),
+      scene_(std::move(scene)),
+      base_(std::make_shared<SceneVersion>(scene_, options.mesh), scene_.scene()) {
+  if (!(options_.tolerance > 0)) throw std::invalid_argument("a session's tolerance must be positive");
+  if (!(options_.threshold >= 0)) throw std::invalid_argument("a session's threshold must not be negative");
+  if (options_.method == UpdateMethod::restart) options_.importance.kind = ImportanceOptions::Kind::total;
+  base_.set_importance(options_.importance);
+}
+
+std::string EditSession::name_of_edit(const Edit& edit) const {
+  return fmt::format("{} {}", name_of(edit.operation), scene_.scene().objects[edit.object].name);
+}
+
+void EditSession::change_geometry(DynamicRadiosity& of, std::uint32_t object, const std::string& name) {
+  of.change_geometry(std::make_shared<SceneVersion>(of.version(), scene_, options_.mesh, object), scene_.scene(),
+                     object, name);
+}
+
+/// The selected object where it is now, in a copy of the solution without it.
+void EditSession::open_temporary() {
+  shown_ = base_;
+  change_geometry(*shown_, *selected_, fmt::format("add {}", scene_.scene().objects[*selected_].name));
+}
+
+void EditSession::apply(const Edit& edit) {
+  const bool of_selected = selected_ == edit.object;
+  if (selected_ && !of_selected && edit.operation != Operation::select)
+    throw InvalidEdit(fmt::format("object '{}' is selected; deselect it before others are edited",
+                                  scene_.scene().objects[*selected_].name));
+  if (edit.operation == Operation::deselect && !selected_ && options_.method != UpdateMethod::scratch)
+    throw InvalidEdit("no object is selected that could be deselected");
+  if (edit.operation == Operation::select && of_selected) return;
+  const EditedScene::Effect effect = scene_.apply(edit);
+  edited_ = edit.object;
+  const bool holds = options_.method != UpdateMethod::scratch;
+  if (!holds && (edit.operation == Operation::select || edit.operation == Operation::deselect)) return;
+  if (edit.operation == Operation::deselect || edit.operation == Operation::select) {
+    if (selected_) {
+      if (!shown_ && scene_.is_present(*selected_)) open_temporary();
+      if (shown_) base_ = *std::exchange(shown_, std::nullopt);
+      selected_.reset();
+    }
+    if (edit.operation == Operation::deselect) return;
+    selected_ = edit.object;
+    // Taken out for now; where it stands is remembered by the scene.
+    EditedScene with = scene_;
+    scene_.apply({Operation::remove, edit.object, {}, {}, {}});
+    change_geometry(base_, edit.object, name_of_edit({Operation::remove, edit.object, {}, {}, {}}));
+    scene_ = std::move(with);
+    return;
+  }
+  if (of_selected) {
+    shown_.reset();
+    if (edit.operation == Operation::remove) selected_.reset();
+    return;
+  }
+  if (options_.method == UpdateMethod::scratch && effect.geometry) base_.start_over();
+  if (effect.geometry) change_geometry(base_, edit.object, name_of_edit(edit));
+  if (effect.materials) base_.change_materials(scene_.scene(), edit.object);
+  if (options_.method == UpdateMethod::scratch) base_.start_over();
+}
+
+/// One shot, the one that comes next; false when nothing is left to do.
+bool EditSession::step(DynamicRadiosity& of, SessionWork& work) {
+  const auto propagate = [&](std::uint32_t patch) { count(of.propagate(patch), work); };
+  if (edited_) {
+    const auto emitter = of.strongest_of(*edited_);
+    if (emitter.energy > 0 && of.pending_changes() > 0 && !of.has_shot(emitter.patch)) {
+      propagate(emitter.patch);
+      return true;
+    }
+  }
+  const auto unshot = of.strongest();
+  const bool propagates = unshot.energy > 0 && of.error_bound() > options_.tolerance;
+  const auto change = of.strongest_change();
+  if (change.energy < 0 && !propagates) return false;
+  const bool first = options_.strategy == Strategy::redistribute_first && change.energy >= 0 &&
+                     change.energy >= options_.threshold * of.power_of_sources();
+  if (first || !propagates || change.energy >= unshot.energy) {
+    const auto search = options_.method == UpdateMethod::restart ? VersionDifference::Search::everywhere
+                                                                 : VersionDifference::Search::shadow_volumes;
+    count(of.redistribute(change.change, change.patch, search), work);
+  } else {
+    propagate(unshot.patch);
+  }
+  return true;
+}
+
+SessionWork EditSession::work(const Budget& budget) {
+  const auto start = Clock::now();
+  SessionWork work;
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const bool temporary = selected_ && scene_.is_present(*selected_);
+  for (;;) {
+    if (budget.shots && work.propagations + work.redistributions >= *budget.shots) break;
+    if (budget.seconds && seconds() >= *budget.seconds) break;
+    if (temporary && !shown_) {
+      const double left = base_.strongest_change().energy;
+      if (left < 0 || left < options_.threshold * base_.power_of_sources()) open_temporary();
+    }
+    if (!step(shown_ ? *shown_ : base_, work)) {
+      if (temporary && !shown_) continue;
+      work.finished = true;
+      break;
+    }
+    if (budget.interrupted && budget.interrupted()) {
+      work.interrupted = true;
+      break;
+    }
+  }
+  if (temporary && !shown_) open_temporary();
+  work.seconds = seconds();
+  return work;
+}
+
+std::vector<PendingChange> EditSession::log() const {
+  std::vector<PendingChange> log;
+  for (std::size_t k = 0; k < solution().pending_changes(); ++k) log.push_back(solution().pending(k));
+  return log;
+}
+
+double EditSession::redistribution_left() {
+  return std::max(0.0, (shown_ ? *shown_ : base_).strongest_change().energy);
+}
+
+}  // namespace exitance

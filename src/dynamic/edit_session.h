@@ -1,0 +1,97 @@
+#pragma once
+// A session of edits: in which order propagation and redistribution shots are made, within a budget, until new input
+// comes (George, Sillion and Greenberg 1990, Figures 3 to 5).
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/dynamic/dynamic_radiosity.h"
+
+namespace exitance {
+
+/// What is done after an edit.
+enum class UpdateMethod : std::uint8_t {
+  scratch,      ///< progressive refinement from nothing
+  restart,      ///< progressive refinement from the previous solution: without shadow volumes every patch's whole column
+                ///< is computed by both versions, in order of all energy that it has shot
+  redistribute  ///< redistribution
+};
+
+enum class Strategy : std::uint8_t {
+  redistribute_first,  ///< one: down to the threshold, then as in two
+  interleave           ///< two: always the larger of both
+};
+
+struct SessionOptions {
+  MeshOptions mesh;
+  UpdateMethod method = UpdateMethod::redistribute;
+  Strategy strategy = Strategy::redistribute_first;
+  /// Of strategy one: redistribution comes first while the next shot moves at least this share of the light sources'
+  /// power, as it is ranked. 0: until nothing is left to redistribute.
+  double threshold = 1e-4;
+  ImportanceOptions importance;
+  double tolerance = 1e-6;  ///< of ‖B − B*‖∞ / max B, worst band: then there is nothing left to do; > 0
+};
+
+/// How long to work. 0 is a budget, too: nothing is shot, and all that is to be redistributed stays in the log.
+struct Budget {
+  std::optional<std::uint64_t> shots;
+  std::optional<double> seconds;
+  /// Asked after every shot: true when there is new input. May be empty.
+  std::function<bool()> interrupted;
+};
+
+/// What a stretch of work has done. The same shots, asked for as a budget, give the same bits again.
+struct SessionWork {
+  std::uint64_t propagations = 0, redistributions = 0;
+  double seconds = 0;
+  ChangeWork propagation, redistribution;
+  bool finished = false;     ///< nothing was left to do
+  bool interrupted = false;  ///< by new input
+};
+
+class EditSession {
+ public:
+  EditSession(Scene scene, const SessionOptions& options);
+
+  /// The solution as it is to be shown.
+  const DynamicRadiosity& solution() const { return shown_ ? *shown_ : base_; }
+  const EditedScene& scene() const { return scene_; }
+
+  /// An edit. Nothing is shot yet. Throws InvalidEdit; the session goes on as it was.
+  ///
+  /// A selected object is taken out of the solution. While it is selected its edits are temporary: the solution with it
+  /// is a copy of the one without, erased when the object changes again, so that any number of moves is in the end one
+  /// removal and one addition. When it is let go the copy, as far as it has come, becomes the solution. Other objects
+  /// cannot be edited meanwhile; selecting a second one lets the first go. From scratch there is nothing to hold.
+  void apply(const Edit& edit);
+
+  /// Works until the budget is used up, input comes or nothing is left. Emitters of the object that was edited last
+  /// propagate first. While an object is selected, what its removal left to do below the threshold comes before its
+  /// temporary place.
+  SessionWork work(const Budget& budget);
+
+  /// Changes that are not worked off, the oldest first: what was interrupted stays here until time is found for it.
+  std::vector<PendingChange> log() const;
+  /// [W or lm] largest energy left to redistribute, as ranked; to propagate.
+  double redistribution_left();
+  double propagation_left() const { return solution().strongest().energy; }
+
+ private:
+  void change_geometry(DynamicRadiosity& of, std::uint32_t object, const std::string& name);
+  bool step(DynamicRadiosity& of, SessionWork& work);
+  void open_temporary();
+  std::string name_of_edit(const Edit& edit) const;
+
+  SessionOptions options_;
+  EditedScene scene_;
+  DynamicRadiosity base_;                   ///< without the selected object, if there is one
+  std::optional<DynamicRadiosity> shown_;   ///< with it
+  std::optional<std::uint32_t> selected_;
+  std::optional<std::uint32_t> edited_;     ///< the object whose emitters come first
+};
+
+}  // namespace exitance

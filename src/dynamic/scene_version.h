@@ -1,0 +1,114 @@
+#pragma once
+// The geometry of a scene between two edits, with its mesh; patches and elements keep their numbers from one version to
+// the next.
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "geometry/polygon_soup.h"
+#include "geometry/shadow_volume.h"
+#include "src/scene/edit.h"
+#include "src/scene/patch_mesh.h"
+#include "src/visibility/exact_visibility.h"
+
+namespace exitance {
+
+/// An object's place in the mesh of a version. Its patches and elements are contiguous, and stay where they are as long
+/// as an edit does not change how many there are.
+struct ObjectSlot {
+  std::uint32_t patch_first = 0, patch_count = 0;
+  std::uint32_t element_first = 0, element_count = 0;
+  std::uint32_t facet_first = 0, facet_last = 0;  ///< in the version's soup
+  std::uint64_t pose = 0;                         ///< changes with every edit of the object's geometry
+  bool present = false;
+};
+
+/// Immutable but for the scratch memory of its observers. Numbers of patches and elements that belong to no present
+/// object are void: such patches have no pieces, such elements must not be asked about.
+class SceneVersion {
+ public:
+  static constexpr std::uint32_t kVoid = 0xffffffffu;
+
+  /// The first version of a scene.
+  SceneVersion(const EditedScene& scene, const MeshOptions& options);
+
+  /// The version after an edit of the geometry of one object. Everything else keeps its elements and sample points; the
+  /// object is cut anew. Where it has as many patches and elements as before they take the same numbers, else new ones
+  /// behind all others.
+  SceneVersion(const SceneVersion& before, const EditedScene& scene, const MeshOptions& options, std::uint32_t object);
+  SceneVersion(const SceneVersion&) = delete;
+  SceneVersion& operator=(const SceneVersion&) = delete;
+
+  const PolygonSoup& soup() const { return soup_; }
+  const PatchMesh& mesh() const { return mesh_; }
+  std::size_t patches() const { return mesh_.patches.size(); }
+  std::size_t elements() const { return mesh_.elements.size(); }
+  std::size_t present_patches() const;
+  std::size_t present_elements() const;
+  std::size_t objects() const { return slots_.size(); }
+
+  const ObjectSlot& slot(std::uint32_t object) const { return slots_[object]; }
+  /// The object that a patch belongs to, or kVoid.
+  std::uint32_t object_of_patch(std::uint32_t patch) const {
+    return patch < object_of_patch_.size() ? object_of_patch_[patch] : kVoid;
+  }
+  std::uint32_t object_of_element(std::uint32_t element) const {
+    return object_of_patch(mesh_.elements[element].patch);
+  }
+  bool has_element(std::uint32_t element) const {
+    return element < elements() && object_of_element(element) != kVoid;
+  }
+
+  /// Objects whose geometry is not the same in both versions, ascending.
+  std::vector<std::uint32_t> changed_since(const SceneVersion& other) const;
+
+  /// Whether an object is there in both, and in the same place.
+  bool same_in(const SceneVersion& other, std::uint32_t object) const {
+    return slots_[object].present && other.slots_[object].present && slots_[object].pose == other.slots_[object].pose;
+  }
+
+  /// Appends every element whose sample point lies in each of the half-spaces, ascending or not, and some that do not;
+  /// none that is void.
+  void find_elements(std::span<const HalfSpace> region, std::vector<std::uint32_t>& found) const;
+
+  /// Surely no light goes from the patch to the element: it lies below the element's plane, or the element behind its.
+  bool faces_away(std::uint32_t element, std::uint32_t patch) const;
+
+  /// Form factor from an element's sample point to a patch, exact (ExactVisibility). Any number of threads. REQUIRES:
+  /// the element is not void.
+  PointFormFactor form_factor(std::uint32_t element, std::uint32_t patch) const;
+
+  /// All of an element's form factors, likewise.
+  PointRow row(std::uint32_t element) const;
+
+ private:
+  void take_block(const PatchMesh& from, std::uint32_t patch_first, std::uint32_t facet_offset, std::uint32_t surface,
+                  const ObjectSlot& slot);
+  void find_facets(const EditedScene& scene);
+  void find_objects();
+  void index_elements();
+
+  /// Sample points as they were when it was made. Those of objects that have changed since are not used.
+  struct ElementIndex {
+    SpatialIndex index;
+    std::vector<ObjectSlot> slots;
+  };
+  /// The object's elements are where they were.
+  bool is_indexed(std::uint32_t object) const {
+    const ObjectSlot& then = element_index_->slots[object];
+    return then.present && slots_[object].present && then.pose == slots_[object].pose;
+  }
+
+  PolygonSoup soup_;
+  PatchMesh mesh_;
+  ExactVisibility visibility_;
+  std::vector<ObjectSlot> slots_;
+  std::vector<std::uint32_t> object_of_patch_;
+  std::shared_ptr<const ElementIndex> element_index_;  ///< shared by versions that follow each other
+  mutable tbb::enumerable_thread_specific<std::unique_ptr<Observer>> observers_;
+};
+
+}  // namespace exitance

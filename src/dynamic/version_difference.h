@@ -1,0 +1,77 @@
+#pragma once
+// How form factors differ between two versions of a scene: F^Δt of George, Sillion and Greenberg 1990, patch by patch
+// and for no more elements than can have changed.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "geometry/shadow_volume.h"
+#include "src/dynamic/scene_version.h"
+
+namespace exitance {
+
+struct FormFactorChange {
+  std::uint32_t element = 0;
+  double before = 0, after = 0;
+  double error = 0;  ///< bound of that of after − before
+};
+
+/// What the search for changed form factors took.
+struct ChangeWork {
+  std::uint64_t candidates = 0;        ///< elements that were classified against a shadow volume
+  std::uint64_t kept = 0;              ///< of those, in the umbra before and after: nothing to do
+  std::uint64_t visibility_tests = 0;  ///< form factors that were computed
+  std::uint64_t idle_tests = 0;        ///< of those, for elements whose form factor did not change
+
+  ChangeWork& operator+=(const ChangeWork& other) {
+    candidates += other.candidates;
+    kept += other.kept;
+    visibility_tests += other.visibility_tests;
+    idle_tests += other.idle_tests;
+    return *this;
+  }
+};
+
+class VersionDifference {
+ public:
+  enum class Search : std::uint8_t {
+    shadow_volumes,  ///< only elements of changed objects and those in the shadow of one, old or new
+    everywhere       ///< all elements: what a program without shadow volumes would do
+  };
+
+  VersionDifference(std::shared_ptr<const SceneVersion> before, std::shared_ptr<const SceneVersion> after);
+  ~VersionDifference();
+  VersionDifference(const VersionDifference&) = delete;
+  VersionDifference& operator=(const VersionDifference&) = delete;
+
+  const SceneVersion& before() const { return *before_; }
+  const SceneVersion& after() const { return *after_; }
+  /// Objects whose geometry is not the same, ascending.
+  const std::vector<std::uint32_t>& objects() const { return objects_; }
+
+  /// Whether a patch of `before` is the same in `after`; else what it has shot is to be taken back as a whole.
+  bool keeps(std::uint32_t patch) const;
+
+  /// F^{t−1} and F^t from elements to a patch that is there before, for elements that are there after, ascending.
+  /// Left out are elements for which neither can differ; some that are given may be equal.
+  ///  - An element of a changed object was not there (or stood elsewhere): its F^{t−1} is 0.
+  ///  - A patch of a changed object is no longer there: its F^t is 0, and all elements that see it are given.
+  ///  - Else elements whose view of the patch meets a changed object as it was or as it is.
+  /// In parallel; any number of threads gives the same bits.
+  std::vector<FormFactorChange> column(std::uint32_t patch, Search search, ChangeWork& work) const;
+
+ private:
+  struct Scratch;
+
+  void find_candidates(std::uint32_t patch, std::vector<std::uint32_t>& found) const;
+  void evaluate(std::uint32_t element, std::uint32_t patch, Search search, Scratch& scratch, FormFactorChange& change,
+                ChangeWork& work) const;
+
+  std::shared_ptr<const SceneVersion> before_, after_;
+  std::vector<std::uint32_t> objects_;
+  std::vector<std::unique_ptr<ShadowCaster>> old_, new_;  ///< the objects' shapes before and after
+  mutable tbb::enumerable_thread_specific<std::unique_ptr<Scratch>> scratch_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,88 @@
+// exitance dynamic, as a user runs it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/cli/program.h"
+
+namespace exitance {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kQuick = " --patch-size 1.6 --elements 1 --no-images ";
+
+TEST(Dynamic, FramesTellWhatWasDoneAndHowFarItIs) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "d").string();
+  for (const char* method : {"scratch", "restart", "redistribute"}) {
+    const Outcome outcome = run("dynamic " + data("cube.toml") + " --patch-size 1.6 --elements 1 --method " + method + " -o " + out);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto frames = json_in(scratch / "d" / "frames.json");
+    ASSERT_EQ(frames.size(), 4u);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto& frame = frames[k];
+      EXPECT_EQ(frame["frame"], k);
+      EXPECT_GE(frame["seconds"], 0.0);
+      EXPECT_GT(frame["shots"], 0);
+      EXPECT_GT(frame["visibility_tests"], 0);
+      EXPECT_LT(frame["error"], 1e-5);
+      EXPECT_LT(frame["error_worst_1_percent"], 1e-4);
+      EXPECT_TRUE(std::filesystem::exists(scratch / "d" / ("frame_00" + std::to_string(k) + ".png")));
+      EXPECT_TRUE(std::filesystem::exists(scratch / "d" / ("frame_00" + std::to_string(k) + ".vtp")));
+    }
+    EXPECT_EQ(frames[1]["edits"][0], "add cube");
+  }
+}
+
+TEST(Dynamic, BudgetsStopReplaysRepeatAndTheLogIsWorkedOff) {
+  const ScratchFolder scratch;
+  const auto frames_of = [&](const std::string& options, const char* name) {
+    const Outcome outcome =
+        run("dynamic " + data("cube.toml") + kQuick + options + " -o " + (scratch / name).string());
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return json_in(scratch / name / "frames.json");
+  };
+  const auto some = frames_of("--budget-shots 7 --work-off", "a");
+  EXPECT_EQ(some[1]["shots"], 7);
+  EXPECT_FALSE(some[2]["log"].empty());
+  EXPECT_GT(some[2]["error"], 1e-5);
+  EXPECT_TRUE(some.back()["log"].empty());
+  EXPECT_LT(some.back()["error"], 1e-5);
+  const auto none = frames_of("--budget-ms 0", "b");
+  EXPECT_EQ(none[1]["shots"], 0);
+  const auto again = frames_of("--replay " + (scratch / "a" / "frames.json").string(), "c");
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(again[k]["shots"], some[k]["shots"]);
+    EXPECT_EQ(again[k]["error"], some[k]["error"]) << "the same bits";
+  }
+}
+
+TEST(Dynamic, BadInputAndLimits) {
+  const ScratchFolder scratch;
+  const std::string out = " -o " + (scratch / "o").string();
+  EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method magic" + out).code, 2);
+  EXPECT_EQ(run("dynamic " + data("cube.toml")).code, 2);
+  EXPECT_EQ(run("dynamic " + data("cube.toml") + " --budget-ms 1 --budget-shots 1" + out).code, 2);
+  EXPECT_EQ(run("dynamic " + (scratch / "none.toml").string() + out).code, 3);
+  std::ofstream(scratch / "bad.toml") << contents(data("cube.toml"))
+                                      << "[[event]]\ntime = 4\nobject = \"cup\"\noperation = \"remove\"\n";
+  const Outcome unknown = run("dynamic " + (scratch / "bad.toml").string() + out);
+  EXPECT_EQ(unknown.code, 3);
+  EXPECT_THAT(unknown.err, HasSubstr("there is no object 'cup'"));
+  std::ofstream(scratch / "wall.toml") << contents(data("cube.toml"))
+                                       << "[[event]]\ntime = 4\nobject = \"cube\"\noperation = \"add\"\n"
+                                          "translate = [1.7, 0, 0]\n";
+  const Outcome wall = run("dynamic " + (scratch / "wall.toml").string() + kQuick + out);
+  EXPECT_EQ(wall.code, 0) << "legal geometry";
+  EXPECT_THAT(wall.err, HasSubstr("passes through 'room'"));
+  const Outcome late = run("dynamic " + data("cube.toml") + " --no-images --time-limit 0.05" + out);
+  EXPECT_EQ(late.code, 4);
+  EXPECT_THAT(late.err, HasSubstr("the partial result was saved"));
+  EXPECT_EQ(json_in(scratch / "o" / "frames.json").size(), 1u);
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,158 @@
+#include "src/dynamic/dynamic_radiosity.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "src/dynamic/converged_reference.h"
+#include "tests/dynamic/rooms.h"
+
+namespace exitance {
+namespace {
+
+constexpr MeshOptions kMesh{1.5, 1};
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = a.size() == b.size() ? 0 : INFINITY;
+  for (std::size_t i = 0; i < a.size() && i < b.size(); ++i) largest = std::max(largest, std::fabs(a[i] - b[i]));
+  return largest;
+}
+
+/// A scene, and a solution that follows its edits.
+class Followed {
+ public:
+  explicit Followed(Scene scene, MeshOptions mesh = kMesh)
+      : edited(std::move(scene)), mesh_(mesh), state(std::make_shared<SceneVersion>(edited, mesh), edited.scene()) {}
+
+  void apply(const Edit& edit) {
+    const EditedScene::Effect effect = edited.apply(edit);
+    if (effect.geometry) {
+      state.change_geometry(std::make_shared<SceneVersion>(state.version(), edited, mesh_, edit.object), edited.scene(),
+                            edit.object, "");
+    }
+    if (effect.materials) state.change_materials(edited.scene(), edit.object);
+  }
+  /// Up to so many shots, the strongest of any kind first.
+  void shoot(int shots, double until = 1e-13) {
+    for (; shots > 0; --shots) {
+      const auto change = state.strongest_change();
+      const auto unshot = state.strongest();
+      if (change.energy >= unshot.energy) {
+        const DynamicShot shot = state.redistribute(change.change, change.patch, search);
+        work += shot.work;
+      } else if (state.error_bound() > until) {
+        state.propagate(unshot.patch);
+      } else if (change.energy >= 0) {
+        work += state.redistribute(change.change, change.patch, search).work;
+      } else {
+        return;
+      }
+    }
+  }
+  void finish() {
+    shoot(100000);
+    ASSERT_EQ(state.pending_changes(), 0u);
+  }
+
+  EditedScene edited;
+  MeshOptions mesh_;
+  DynamicRadiosity state;
+  VersionDifference::Search search = VersionDifference::Search::shadow_volumes;
+  ChangeWork work;
+};
+
+TEST(DynamicRadiosity, WithoutEditsItIsProgressiveRefinement) {
+  Followed room(test_room());
+  room.finish();
+  EXPECT_LT(largest_difference(room.state.element_B(), converged_reference(room.state)), 1e-11);
+}
+
+TEST(DynamicRadiosity, EachKindOfEditEqualsSolvingFromScratch) {
+  std::vector<Edit> edits;
+  Edit move{Operation::move, 1, Placement{}, {}, {}};
+  move.placement->translation = {0.5, 0.25, 0.5};
+  edits.push_back(move);
+  edits.push_back({Operation::add, 3, {}, {}, {}});
+  edits.push_back({Operation::remove, 2, {}, {}, {}});
+  edits.push_back({Operation::change, 1, {}, {}, {{MaterialChange::kEvery, 2}}});
+  edits.push_back({Operation::change, 3, {}, {}, {{3, 0}}});
+  edits.push_back({Operation::reshape, 1, {}, box_surfaces({0.5, 0.5, 0}, {2, 1.5, 1.5}, 1, 1, false), {}});
+  Edit turn{Operation::move, 4, Placement{rotation({1, 0, 0.2}, 30), {0, 1, 0.4}}, {}, {}};
+  edits.push_back(turn);
+  edits.push_back({Operation::remove, 4, {}, {}, {}});
+  edits.push_back({Operation::add, 2, {}, {}, {}});
+  Followed room(test_room());
+  room.finish();
+  for (const Edit& edit : edits) {
+    room.apply(edit);
+    room.finish();
+    EXPECT_LT(largest_difference(room.state.element_B(), converged_reference(room.state)), 1e-10)
+        << name_of(edit.operation) << " object " << edit.object;
+  }
+}
+
+// The most important test: 100 random edits, interrupted anywhere.
+TEST(DynamicRadiosity, AHundredRandomEditsInterruptedAnywhereEqualSolvingFromScratch) {
+  RandomEdits random(5);
+  Followed room(test_room());
+  std::size_t most_pending = 0;
+  for (int k = 0; k < 100; ++k) {
+    room.shoot(static_cast<int>(random.pick(k % 10 == 0 ? 400 : 12)));
+    room.apply(random.next(room.edited));
+    most_pending = std::max(most_pending, room.state.pending_changes());
+    if (k % 25 != 24) continue;
+    room.finish();
+    EXPECT_LT(largest_difference(room.state.element_B(), converged_reference(room.state)), 1e-10) << "edit " << k;
+  }
+  EXPECT_GT(most_pending, 5u) << "several changes were open at a time";
+}
+
+TEST(DynamicRadiosity, ShadowVolumesMissNothingThatLookingEverywhereFinds) {
+  RandomEdits random(11);
+  EditedScene edited(test_room());
+  auto version = std::make_shared<const SceneVersion>(edited, MeshOptions{1.0, 1});
+  std::uint64_t changed = 0;
+  for (int k = 0; k < 20; ++k) {
+    const Edit edit = random.next(edited);
+    if (!edited.apply(edit).geometry) continue;
+    const auto next = std::make_shared<const SceneVersion>(*version, edited, MeshOptions{1.0, 1}, edit.object);
+    const VersionDifference difference(version, next);
+    for (std::uint32_t p = 0; p < version->patches(); ++p) {
+      if (version->object_of_patch(p) == SceneVersion::kVoid) continue;
+      ChangeWork all, some;
+      const auto everywhere = difference.column(p, VersionDifference::Search::everywhere, all);
+      const auto found = difference.column(p, VersionDifference::Search::shadow_volumes, some);
+      auto at = found.begin();
+      for (const FormFactorChange& c : everywhere) {
+        if (std::fabs(c.after - c.before) <= c.error + 1e-15) continue;
+        ++changed;
+        while (at != found.end() && at->element < c.element) ++at;
+        ASSERT_TRUE(at != found.end() && at->element == c.element)
+            << "edit " << k << ", patch " << p << ", element " << c.element << ": " << c.before << " to " << c.after;
+        EXPECT_NEAR(at->after - at->before, c.after - c.before, 1e-12);
+      }
+    }
+    version = next;
+  }
+  EXPECT_GT(changed, 1000u);
+}
+
+TEST(DynamicRadiosity, AnyNumberOfThreadsGivesTheSameBits) {
+  const auto solve = [](std::size_t threads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    RandomEdits random(3);
+    Followed room(test_room());
+    for (int k = 0; k < 6; ++k) {
+      room.shoot(40);
+      room.apply(random.next(room.edited));
+    }
+    room.shoot(60);
+    return room.state.element_B();
+  };
+  const auto one = solve(1);
+  EXPECT_EQ(one, solve(2));
+  EXPECT_EQ(one, solve(5));
+}
+
+}  // namespace
+}  // namespace exitance

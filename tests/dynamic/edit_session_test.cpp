@@ -1,0 +1,208 @@
+#include "src/dynamic/edit_session.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "src/dynamic/converged_reference.h"
+#include "src/dynamic/trespass.h"
+#include "tests/dynamic/rooms.h"
+
+namespace exitance {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+SessionOptions options_with(UpdateMethod method, Strategy strategy, ImportanceOptions::Kind importance) {
+  SessionOptions options;
+  options.mesh = {1.5, 1};
+  options.method = method;
+  options.strategy = strategy;
+  options.importance.kind = importance;
+  options.tolerance = 1e-13;
+  return options;
+}
+
+SessionOptions plain() {
+  return options_with(UpdateMethod::redistribute, Strategy::redistribute_first, ImportanceOptions::Kind::estimated);
+}
+
+double distance(const DynamicRadiosity& state) {
+  const std::vector<double> reference = converged_reference(state), B = state.element_B();
+  double largest = 0;
+  for (std::size_t i = 0; i < B.size(); ++i) largest = std::max(largest, std::fabs(B[i] - reference[i]));
+  return largest;
+}
+
+Edit moved(std::uint32_t object, const Vec3& by) {
+  return {Operation::move, object, Placement{{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, by}, {}, {}};
+}
+
+TEST(EditSession, EveryMethodStrategyAndImportanceConvergesToTheSame) {
+  using Kind = ImportanceOptions::Kind;
+  for (const SessionOptions& options :
+       {options_with(UpdateMethod::scratch, Strategy::interleave, Kind::estimated),
+        options_with(UpdateMethod::restart, Strategy::interleave, Kind::estimated),
+        options_with(UpdateMethod::redistribute, Strategy::redistribute_first, Kind::estimated),
+        options_with(UpdateMethod::redistribute, Strategy::redistribute_first, Kind::exact),
+        options_with(UpdateMethod::redistribute, Strategy::interleave, Kind::estimated),
+        options_with(UpdateMethod::redistribute, Strategy::interleave, Kind::exact)}) {
+    EditSession session(test_room(), options);
+    EXPECT_TRUE(session.work({}).finished);
+    session.apply(moved(1, {0.25, 0.5, 0}));
+    session.apply({Operation::add, 3, {}, {}, {}});
+    const SessionWork work = session.work({});
+    EXPECT_TRUE(work.finished);
+    EXPECT_THAT(session.log(), IsEmpty());
+    EXPECT_LT(distance(session.solution()), 1e-10);
+    if (options.method == UpdateMethod::scratch) {
+      EXPECT_EQ(work.redistributions, 0u);
+    }
+  }
+}
+
+TEST(EditSession, ABudgetOfZeroShootsNothingAndLeavesAllInTheLog) {
+  EditSession session(test_room(), plain());
+  session.work({});
+  session.apply(moved(1, {0.5, 0, 0}));
+  Budget nothing;
+  nothing.shots = 0;
+  const SessionWork work = session.work(nothing);
+  EXPECT_EQ(work.propagations + work.redistributions, 0u);
+  EXPECT_FALSE(work.finished);
+  ASSERT_EQ(session.log().size(), 1u);
+  EXPECT_EQ(session.log()[0].name, "move box");
+  EXPECT_GT(session.log()[0].patches, 10u);
+  EXPECT_GT(session.redistribution_left(), 0);
+  EXPECT_GT(session.log()[0].largest_energy, 0);
+  nothing = {};
+  nothing.seconds = 0;
+  EXPECT_EQ(session.work(nothing).redistributions, 0u);
+  session.work({});
+  EXPECT_THAT(session.log(), IsEmpty());
+  EXPECT_LT(distance(session.solution()), 1e-10) << "worked off later, nothing is lost";
+}
+
+TEST(EditSession, ShotsThatWereCountedReplayBitForBit) {
+  const auto run = [](const std::vector<std::uint64_t>& shots, std::vector<std::uint64_t>* counted) {
+    EditSession session(test_room(), plain());
+    session.work({});
+    std::vector<double> B;
+    for (std::size_t k = 0; k < 4; ++k) {
+      session.apply(moved(2, {-0.2 * static_cast<double>(k), 0.1, 0.3}));
+      Budget budget;
+      int polls = 0;
+      if (shots.empty()) {
+        budget.interrupted = [&] { return ++polls == static_cast<int>(5 + 7 * k); };
+      } else {
+        budget.shots = shots[k];
+      }
+      const SessionWork work = session.work(budget);
+      if (counted != nullptr) {
+        EXPECT_TRUE(work.interrupted);
+        counted->push_back(work.propagations + work.redistributions);
+      }
+      B = session.solution().element_B();
+    }
+    return B;
+  };
+  std::vector<std::uint64_t> counted;
+  const auto first = run({}, &counted);
+  EXPECT_THAT(counted, ElementsAre(5, 12, 19, 26));
+  EXPECT_EQ(first, run(counted, nullptr));
+}
+
+TEST(EditSession, EmittersOnAnAddedObjectPropagateFirst) {
+  EditSession session(test_room(), plain());
+  session.work({});
+  session.apply({Operation::add, 3, {}, {}, {}});
+  Budget six;
+  six.shots = 6;
+  const SessionWork work = session.work(six);
+  EXPECT_EQ(work.propagations, 6u) << "the lamp's six patches";
+}
+
+TEST(EditSession, StrategyOneRedistributesBeforeItPropagates) {
+  SessionOptions options = plain();
+  options.threshold = 0;
+  EditSession session(test_room(), options);
+  session.work({});
+  session.apply({Operation::remove, 1, {}, {}, {}});
+  Budget some;
+  some.shots = 20;
+  EXPECT_EQ(session.work(some).redistributions, 20u);
+}
+
+// Only what had been shot when the change came is redistributed: a change before anything was shot leaves nothing to do.
+TEST(EditSession, NothingIsRedistributedOfWhatWasNotShot) {
+  EditSession session(test_room(), plain());
+  session.apply(moved(1, {0.5, 0, 0}));
+  EXPECT_THAT(session.log(), IsEmpty());
+  Budget three;
+  three.shots = 3;
+  EXPECT_EQ(session.work(three).propagations, 3u);
+  session.apply(moved(1, {0.25, 0, 0}));
+  ASSERT_EQ(session.log().size(), 1u);
+  EXPECT_LE(session.log()[0].patches, 3u);
+  const SessionWork work = session.work({});
+  EXPECT_LE(work.redistributions, 3u);
+  EXPECT_LT(distance(session.solution()), 1e-10);
+}
+
+TEST(EditSession, ASelectedObjectsMovesBecomeOneRemovalAndOneAddition) {
+  EditSession session(test_room(), plain());
+  session.work({});
+  session.apply({Operation::select, 1, {}, {}, {}});
+  Budget few;
+  few.shots = 6;
+  for (int k = 0; k < 8; ++k) {
+    session.apply(moved(1, {0.1 * k, 0.05 * k, 0}));
+    session.work(few);
+    EXPECT_TRUE(session.solution().version().slot(1).present) << "it is shown where it is";
+    EXPECT_LE(session.log().size(), 2u);
+  }
+  EXPECT_THROW(session.apply(moved(2, {0, 0, 0.5})), InvalidEdit) << "only what is selected can be edited";
+  session.apply({Operation::deselect, 1, {}, {}, {}});
+  EXPECT_LE(session.log().size(), 2u);
+  EXPECT_TRUE(session.work({}).finished);
+  EXPECT_LT(distance(session.solution()), 1e-10);
+  EXPECT_THROW(session.apply({Operation::deselect, 1, {}, {}, {}}), InvalidEdit);
+  // What is removed while it is selected is gone.
+  session.apply({Operation::select, 2, {}, {}, {}});
+  session.work(few);
+  session.apply({Operation::remove, 2, {}, {}, {}});
+  session.work({});
+  EXPECT_FALSE(session.solution().version().slot(2).present);
+  EXPECT_LT(distance(session.solution()), 1e-10);
+}
+
+TEST(EditSession, WhatStaysInTheUmbraIsKept) {
+  Scene scene = test_room();
+  // A box that leaves only a slit below the light hides nearly all of it from the floor, wherever it is shifted to.
+  const auto shape = box_surfaces({0.25, 0.25, 2.5}, {2.75, 2.75, 2.75}, 1, 0, false);
+  std::copy(shape.begin(), shape.end(), scene.surfaces.begin() + 6);
+  EditSession session(std::move(scene), plain());
+  session.work({});
+  session.apply(moved(1, {0.03125, 0, 0}));
+  const SessionWork work = session.work({});
+  EXPECT_GT(work.redistribution.kept, 10u);
+  EXPECT_LT(distance(session.solution()), 1e-10);
+}
+
+TEST(Trespass, SaysWhatNoObjectCanDo) {
+  EditedScene scene(test_room());
+  const auto said = [&](const Vec3& by) {
+    scene.apply(moved(1, by));
+    const SceneVersion version(scene, {1.5, 1});
+    return find_trespass(scene, version, 1);
+  };
+  EXPECT_THAT(said({0, 0, 0}), IsEmpty());
+  EXPECT_THAT(said({1.25, 0, 0}), IsEmpty()) << "against the wall";
+  EXPECT_THAT(said({1.5, 0, 0}), ElementsAre(HasSubstr("passes through 'room'")));
+  EXPECT_THAT(said({9, 0, 0}), ElementsAre(HasSubstr("has left the scene")));
+  EXPECT_THAT(said({0.5, -0.5, 0}), ElementsAre(HasSubstr("passes through 'L'")));
+}
+
+}  // namespace
+}  // namespace exitance
