@@ -3,7 +3,7 @@
 #include <map>
 
 #include "bench/checked_main.h"
-#include "measuring/measured_room.h"
+#include "src/visibility/measured_room.h"
 
 namespace exitance {
 namespace {

@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "bench/checked_main.h"
-#include "measuring/measured_room.h"
 #include "src/form_factor/pair_rows.h"
 #include "src/scene/reader.h"
+#include "src/visibility/measured_room.h"
 
 namespace exitance {
 namespace {

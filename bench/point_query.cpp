@@ -4,7 +4,7 @@
 #include <map>
 
 #include "bench/checked_main.h"
-#include "measuring/measured_room.h"
+#include "src/visibility/measured_room.h"
 
 namespace exitance {
 namespace {

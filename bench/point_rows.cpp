@@ -7,7 +7,7 @@
 #include <chrono>
 
 #include "bench/checked_main.h"
-#include "measuring/measured_room.h"
+#include "src/visibility/measured_room.h"
 
 namespace exitance {
 namespace {

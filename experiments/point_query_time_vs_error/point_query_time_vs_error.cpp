@@ -12,8 +12,8 @@
 #include "experiments/csv_table.h"
 #include "experiments/plot_note.h"
 #include "experiments/power_law.h"
-#include "measuring/measured_room.h"
 #include "src/output/plot.h"
+#include "src/visibility/measured_room.h"
 
 namespace exitance {
 namespace {
