@@ -83,4 +83,10 @@ inline std::vector<std::string> differences(const CsvTable& found, const CsvTabl
   return lines;
 }
 
+/// Prints what is wrong, a line each; the exit code that says whether anything is.
+inline int verdict(const std::vector<std::string>& wrong) {
+  for (const std::string& line : wrong) fmt::print(stderr, "{}\n", line);
+  return wrong.empty() ? 0 : 1;
+}
+
 }  // namespace exitance

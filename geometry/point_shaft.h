@@ -50,7 +50,6 @@ class PointShaft {
   Receiver receiver_;
   ShaftEnd shooter_;
   std::vector<Vec3> loop_;
-  Vec3 size_of_all_;  ///< of the box around the soup
   Box box_;
   bool empty_ = true;
   OpenRegion region_;

@@ -96,9 +96,7 @@ int run(int argc, char** argv) {
     write_plot(std::filesystem::path(out) / "plot.svg", plot);
   }
   if (expected.empty()) return 0;
-  const std::vector<std::string> wrong = differences(table, CsvTable::read(expected), 3, 0.1, {});
-  for (const std::string& line : wrong) fmt::print(stderr, "{}\n", line);
-  return wrong.empty() ? 0 : 1;
+  return verdict(differences(table, CsvTable::read(expected), 3, 0.1, {}));
 }
 
 }  // namespace

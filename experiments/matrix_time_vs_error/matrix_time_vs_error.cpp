@@ -147,8 +147,7 @@ int ask(int argc, char** argv) {
        differences(table, CsvTable::read(expected), 4, 0.25,
                    {"largest_error", "largest_of_999", "largest_of_open", "queries", "cpu_seconds"}))
     wrong.push_back(line);
-  for (const std::string& line : wrong) fmt::print(stderr, "{}\n", line);
-  return wrong.empty() ? 0 : 1;
+  return verdict(wrong);
 }
 
 }  // namespace

@@ -138,9 +138,7 @@ int run(int argc, char** argv) {
     if (reduced) break;
   }
   if (expected.empty()) return 0;
-  const std::vector<std::string> wrong = worse_than(table, CsvTable::read(expected));
-  for (const std::string& line : wrong) fmt::print(stderr, "{}\n", line);
-  return wrong.empty() ? 0 : 1;
+  return verdict(worse_than(table, CsvTable::read(expected)));
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
 #include "src/dynamic/converged_reference.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "src/form_factor/point_rows.h"
+#include "src/form_factor/row_blocks.h"
 #include "src/solve/gather.h"
 
 namespace exitance {
@@ -15,25 +14,15 @@ std::vector<double> converged_reference(const DynamicRadiosity& state) {
   const SceneVersion& version = state.version();
   FormFactorMatrix rows;
   rows.columns = static_cast<std::uint32_t>(version.patches());
-  constexpr std::uint32_t kBlock = 1024;
-  std::vector<PointRow> some(kBlock);
+  constexpr std::size_t kBlock = 1024;
   const auto n = static_cast<std::uint32_t>(version.elements());
-  for (std::uint32_t begin = 0; begin < n; begin += kBlock) {
-    const std::uint32_t end = std::min(n, begin + kBlock);
-    some.assign(kBlock, {});
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(begin, end, 1), [&](const auto& range) {
-      for (std::uint32_t e = range.begin(); e < range.end(); ++e) {
-        if (version.has_element(e)) some[e - begin] = version.row(e);
-      }
-    });
-    for (std::uint32_t e = begin; e < end; ++e) {
-      const PointRow& row = some[e - begin];
-      rows.column.insert(rows.column.end(), row.column.begin(), row.column.end());
-      rows.F.insert(rows.F.end(), row.F.begin(), row.F.end());
-      rows.F_error.insert(rows.F_error.end(), row.F_error.begin(), row.F_error.end());
-      rows.row_first.push_back(rows.F.size());
-    }
-  }
+  for_each_row(
+      n, kBlock,
+      [&](std::size_t k) {
+        const auto e = static_cast<std::uint32_t>(k);
+        return version.has_element(e) ? version.row(e) : PointRow{};
+      },
+      [&](const PointRow& row) { append(rows, row); }, [](std::size_t) {});
   const Discretisation d = state.discretisation();
   const Solution solution = gather(make_system(d, rows), {.tolerance = 1e-13});
   std::vector<double> B = element_exitance(d, irradiance(rows, solution.B, d.bands));

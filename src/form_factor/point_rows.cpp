@@ -29,16 +29,20 @@ void observe(const MeshVisibility& visibility, std::size_t count, const ElementO
 
 }  // namespace
 
+void append(FormFactorMatrix& F, const PointRow& row) {
+  F.column.insert(F.column.end(), row.column.begin(), row.column.end());
+  F.F.insert(F.F.end(), row.F.begin(), row.F.end());
+  F.F_error.insert(F.F_error.end(), row.F_error.begin(), row.F_error.end());
+  F.row_first.push_back(F.F.size());
+}
+
 PointRows point_rows(const MeshVisibility& visibility, std::size_t first, std::size_t last, const Progress& progress) {
   PointRows result;
   result.F.columns = static_cast<std::uint32_t>(visibility.mesh().patches.size());
   observe(
       visibility, last - first, [&](std::size_t k) { return first + k; }, progress,
       [&](const PointRow& row) {
-        result.F.column.insert(result.F.column.end(), row.column.begin(), row.column.end());
-        result.F.F.insert(result.F.F.end(), row.F.begin(), row.F.end());
-        result.F.F_error.insert(result.F.F_error.end(), row.F_error.begin(), row.F_error.end());
-        result.F.row_first.push_back(result.F.F.size());
+        append(result.F, row);
         result.statistics += row.statistics;
       });
   return result;

@@ -14,6 +14,9 @@ struct PointRows {
   PointRowStatistics statistics;
 };
 
+/// Appends a row to the matrix.
+void append(FormFactorMatrix& F, const PointRow& row);
+
 /// Rows of the elements `first` … `last` − 1. In parallel; any number of threads gives the same bits.
 PointRows point_rows(const MeshVisibility& visibility, std::size_t first, std::size_t last,
                      const Progress& progress = {});

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/visibility/contacts.h"
+
 namespace exitance {
 namespace {
 
@@ -51,19 +53,8 @@ RoundedContact::RoundedContact(const PolygonSoup& soup, const Source& receiver, 
 }
 
 bool RoundedContact::buries(const Vec3& point) const {
-  return std::ranges::any_of(faces_, [&](std::uint32_t f) { return holds(f, point); }) ||
+  return std::ranges::any_of(faces_, [&](std::uint32_t f) { return lies_within(*soup_, f, point); }) ||
          std::ranges::any_of(shells_, [&](std::uint32_t s) { return holds(soup_->shells()[s], point); });
-}
-
-/// Of a point in the facet's plane but for rounding.
-bool RoundedContact::holds(std::uint32_t facet, const Vec3& point) const {
-  const Facet& f = soup_->facets()[facet];
-  const auto c = soup_->corners(f);
-  for (std::size_t k = 0; k < c.size(); ++k) {
-    const Vec3 &a = c[k].at, &b = c[(k + 1) % c.size()].at;
-    if (dot(f.plane.normal, cross(b - a, point - a)) < 0) return false;
-  }
-  return true;
 }
 
 /// From within, a closed surface is seen all around.

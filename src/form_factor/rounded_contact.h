@@ -29,7 +29,6 @@ class RoundedContact {
   std::span<const std::uint32_t> faces() const { return faces_; }
 
  private:
-  bool holds(std::uint32_t facet, const Vec3& point) const;
   bool holds(const Shell& shell, const Vec3& point) const;
 
   const PolygonSoup* soup_;

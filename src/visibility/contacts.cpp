@@ -15,6 +15,16 @@ bool face_against(const Plane& a, const Plane& b) {
 
 }  // namespace
 
+bool lies_within(const PolygonSoup& soup, std::uint32_t facet, const Vec3& point) {
+  const Facet& f = soup.facets()[facet];
+  const auto corners = soup.corners(f);
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Vec3 &a = corners[k].at, &b = corners[(k + 1) % corners.size()].at;
+    if (dot(cross(b - a, point - a), f.plane.normal) < 0) return false;
+  }
+  return true;
+}
+
 Contacts::Contacts(const PolygonSoup& soup)
     : soup_(&soup),
       near_(kNear * soup.extent()),
@@ -91,12 +101,7 @@ bool Contacts::any_at(std::span<const std::uint32_t> facets, const Vec3& point, 
   return std::ranges::any_of(facets, [&](std::uint32_t facet) {
     const Facet& f = soup_->facets()[facet];
     if (std::fabs(dot(f.plane.normal, point - f.plane.origin)) > near * norm(f.plane.normal)) return false;
-    const auto corners = soup_->corners(f);
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      const Vec3 &a = corners[k].at, &b = corners[(k + 1) % corners.size()].at;
-      if (dot(cross(b - a, point - a), f.plane.normal) < 0) return false;
-    }
-    return true;
+    return lies_within(*soup_, facet, point);
   });
 }
 

@@ -9,6 +9,10 @@
 
 namespace exitance {
 
+/// Whether a point of a facet's plane, or nearly of it, lies within the facet or on its edge; decided in double
+/// precision.
+bool lies_within(const PolygonSoup& soup, std::uint32_t facet, const Vec3& point);
+
 /// Rays start and end a little off their surfaces, and so beyond what lies on them: from within a solid that stands on
 /// the floor, say, to within the same. They are told what lies where; exact visibility is told only what does so up to
 /// rounding, as it knows the rest. Any number of threads may ask at once.
