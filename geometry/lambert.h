@@ -31,33 +31,36 @@ class LambertSum {
     const Real e_length = norm(e);
     const Vec<Real> w0 = p + arc.t0 * e, w1 = p + arc.t1 * e;
     const Real length0 = norm(w0), length1 = norm(w1);
-    // For an edge of input vertices |p × e| is the length of the side's normal.
-    const Real C = of_vertices ? side.length : norm(cross(p, e));
+    // For an edge of input vertices |p × e| is the length of the side's normal, if that is known.
+    const bool normal_is_known = 20 * side.error < side.length, by_normal = of_vertices && normal_is_known;
+    const Real C = by_normal ? side.length : norm(cross(p, e));
     const Real S = (arc.t1 - arc.t0) * C, D = dot(w0, w1);
     const Real theta = atan2(S, D);
-    const Real g = dot(n_, side.m) / (n_length_ * side.length);
-    const Real term = g * theta;
 
     // δw: three roundings on parts no longer than |p| + |e|, and what the corners carry. δC: that of the side's normal,
     // or 7 u |p||e| and the corners'. δθ ≤ (δS + δD) / (|w0||w1|), as S² + D² = |w0|²|w1|²; 1.1 covers the second
-    // order, which the comparison at the end keeps small. δg ≤ 1.1 δm / |m| and 8 roundings.
+    // order, which the comparison keeps small. δg ≤ 1.1 δm / |m| and 8 roundings.
     const Real corner = corners.error(from) + corners.error(to);
     const Real dw = 4 * u * (p_length + e_length) + corner;
-    const Real dC = of_vertices ? side.error : Real(8 * u * p_length * e_length + corner * (e_length + p_length));
+    const Real dC = by_normal ? side.error : Real(8 * u * p_length * e_length + corner * (e_length + p_length));
     const Real product = length0 * length1;
     Real dtheta = ((arc.t1 - arc.t0) * dC + 4 * u * S) / product + dw * (1 / length0 + 1 / length1) + 8 * u;
     // An end that is wrong by δt moves by |dw/dt| δt across, seen under C / |w|².
     dtheta += C * (arc.t0_error / (length0 * length0) + arc.t1_error / (length1 * length1));
     dtheta *= Real(1.1);
-    const Real dg = Real(1.1) * side.error / side.length + 8 * u;
-    const bool second_order_is_small = 20 * dw < (length0 < length1 ? length0 : length1) &&
-                                       20 * side.error < side.length && 20 * arc.t0_error * e_length < length0 &&
-                                       20 * arc.t1_error * e_length < length1;
+    const bool ends_are_known = 20 * dw < (length0 < length1 ? length0 : length1) &&
+                                20 * arc.t0_error * e_length < length0 && 20 * arc.t1_error * e_length < length1;
     ++arcs_;
-    if (!second_order_is_small) {  // nothing is known; an arc is shorter than π
+    if (!ends_are_known) {  // nothing is known; an arc is shorter than π
       error_ += boost::math::constants::pi<Real>();
       return theta;
     }
+    if (!normal_is_known) {  // as of a cut by a plane that is the source's but for rounding; |g| ≤ 1
+      error_ += theta + dtheta;
+      return theta;
+    }
+    const Real g = dot(n_, side.m) / (n_length_ * side.length), dg = Real(1.1) * side.error / side.length + 8 * u;
+    const Real term = g * theta;
     add(arc.of_source ? term : Real(-term));
     error_ += fabs(g) * dtheta + theta * dg + 4 * u * fabs(term);
     size_ += fabs(term);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "src/form_factor/crossing_pole.h"
+#include "src/form_factor/pole.h"
 
 namespace exitance {
 namespace {
@@ -62,14 +62,21 @@ ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& re
   std::vector<AreaCell> shapes;
   for (const AreaCell& shape : cells_of(loop)) add_about_contacts(shape, shapes);
   for (const AreaCell& shape : shapes) {
-    Cell cell;
-    cell.shape = shape;
+    Cell cell = unmeasured(shape);
     for (std::uint32_t e = 0; e < events_.size(); ++e) {
       if (events_[e].concerns(shape.loop())) cell.uncut.push_back(e);
     }
     area_ += shape.area();
     cells_.push_back(std::move(cell));
   }
+}
+
+/// Of which nothing is known but that no point of it sees more than `most`.
+ObstructedExchange::Cell ObstructedExchange::unmeasured(const AreaCell& shape) const {
+  Cell cell;
+  cell.shape = shape;
+  cell.error = most_ * shape.area();
+  return cell;
 }
 
 void ObstructedExchange::find_contacts() {
@@ -230,9 +237,13 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
     cell.fall = std::clamp(cell.fall, 0.05, 0.3);
   }
   if (order > kScoutOrder && compare && !cell.mixed && outline != 0) {
-    const PoleError poles = pole_error(view.seen_edges(), cell.shape, order);
-    if (poles.error > cell.error) cell.fall = std::max(cell.fall, poles.fall);
-    cell.error += poles.error;
+    const std::vector<SeenEdge> edges = view.seen_edges();
+    const double of_rule = cell.error;
+    for (const PoleError& poles : {crossing_poles(edges, cell.shape, order),
+                                   corner_poles(edges, scratch_.back().point, contacts_, cell.shape, order)}) {
+      if (poles.error > of_rule) cell.fall = std::max(cell.fall, poles.fall);
+      cell.error += poles.error;
+    }
   }
   if (cell.mixed) cell.error = std::max(cell.error, truncation.last + kMixed * (greatest - least) * area);
   if (cell.mixed && greatest == 0) cell.error = kUnnoticed * most_ * area;
@@ -408,8 +419,7 @@ std::vector<ObstructedExchange::Cell> ObstructedExchange::parts_of(Viewpoint* vi
   for (const AreaCell& shape : shapes) add_about_contacts(shape, arranged);
   std::vector<Cell> parts;
   for (const AreaCell& shape : arranged) {
-    Cell part;
-    part.shape = shape;
+    Cell part = unmeasured(shape);
     // A half's poles lie twice as far away as those of the whole, so that its coefficients fall by the square at best.
     // What made those of the whole fall slowly may hide between the few points of the half's first rule.
     if (along == kNone && !cell.mixed) part.slowest = cell.fall * cell.fall;
@@ -447,8 +457,7 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
     started_ = true;
     cut_all();
     for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-      if (stop && stop()) return;
-      measure(view, cells_[c], kScoutOrder, tolerance);
+      if (!(stop && stop())) measure(view, cells_[c], kScoutOrder, tolerance);
       running_error_ += cells_[c].error + cells_[c].point_error;
       push(c);
     }
@@ -474,7 +483,10 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
       order = kHighestOrder;  // the figure of one rule may be by chance much larger than that of the next
     }
     std::vector<Cell> parts;
-    if (old.uncut.empty() && !old.mixed && order <= kHighestOrder) {
+    if (old.order == 0) {
+      order = kScoutOrder;
+      parts.push_back(std::move(cells_[worst]));
+    } else if (old.uncut.empty() && !old.mixed && order <= kHighestOrder) {
       parts.push_back(std::move(cells_[worst]));
     } else {
       const bool known = old.uncut.empty() && !old.mixed;

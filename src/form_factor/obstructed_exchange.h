@@ -56,6 +56,7 @@ class ObstructedExchange {
     std::uint64_t outline = 0;
   };
 
+  Cell unmeasured(const AreaCell& shape) const;
   PointFormFactor look(Viewpoint& view, const Vec3& from, double tolerance);
   std::uint64_t outline_of(const Viewpoint& view) const;
   Sighting sight(Viewpoint& view, const Vec3& from);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "src/form_factor/crossing_pole.h"
+#include "src/form_factor/pole.h"
 #include "tests/geometry/placement.h"
 
 namespace exitance {
@@ -98,11 +98,52 @@ TEST(CrossingPole, GrowsTowardsParallelEdgesAndIsNoneInOnePlane) {
     const SeenEdge g = edge(3, {-1, 0.05 + turn, 0.4}, {1, 0.05 - turn, 0.6});
     SeenEdge e = edge(2, {-1, 0.05, 1}, {1, 0.05, 1});
     e.to = g.to;
-    return pole_error(std::array{e, g}, cell, 5).error;
+    return crossing_poles(std::array{e, g}, cell, 5).error;
   };
   EXPECT_EQ(error(0), 0);
   EXPECT_GT(error(0.2), 0);
   EXPECT_GT(error(0.02), 100 * error(0.2));
+}
+
+/// ∫ of what an edge from the origin contributes over a cell that begins beside the origin: rules of low order see
+/// nothing of what happens there. Truth by rules of high order over a graded cell.
+TEST(CornerPole, BoundsWhatRulesMissBesideACorner) {
+  const SeenEdge e = edge(1, {0, 0, 0}, {-0.3, 0.1, 1});
+  const auto contribution = [&](const Vec3& x) {
+    const Vec3 p = e.a - x, q = e.b - x, m = cross(p, q);
+    return std::atan2(norm(m), dot(p, q)) * m.z / norm(m);
+  };
+  const auto integral = [&](const AreaCell& cell, int order) {
+    std::vector<WeightedPoint> points;
+    gauss_points(cell, order, points);
+    double sum = 0;
+    for (const WeightedPoint& p : points) sum += p.weight * contribution(p.point);
+    return sum / 6.283185307179586;
+  };
+  for (const bool turn : {false, true}) {
+    for (const double d : {1e-3, 1e-2}) {
+      const auto cell = [&](double from, double to) {
+        const auto at = [](double s, double t) { return Vec3{s, 0.3 * s + t * s, 0}; };
+        AreaCell c{{at(from, 0), at(to, 0), at(to, 0.5), at(from, 0.5)}, 4};
+        if (turn) std::ranges::rotate(c.corner, c.corner.begin() + 1);
+        for (Vec3& v : c.corner) v = v + Vec3{0, 0.5 * d, 0};
+        return c;
+      };
+      double truth = 0;
+      for (double from = d; from < 1; from *= 2) truth += integral(cell(from, std::min(2 * from, 1.0)), 16);
+      const Vec3 x{0.5, 0.3, 0};
+      SeenEdge seen = e;
+      seen.from = (1 / norm(e.a - x)) * (e.a - x);
+      seen.to = (1 / norm(e.b - x)) * (e.b - x);
+      for (const int order : {4, 6, 8, 10}) {
+        const AreaCell whole = cell(d, 1);
+        const double error = std::fabs(integral(whole, order) - truth),
+                     bound = corner_poles(std::array{seen}, x, {}, whole, order).error;
+        EXPECT_GE(bound, error) << d << ' ' << order;
+        EXPECT_LE(bound, 1e4 * error) << d << ' ' << order;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -104,6 +104,23 @@ TEST(HardPairs, RulesThatAgreeByChanceAreNotBelieved) {
   for (const double tolerance : {1e-5, 1e-6, 3e-7, 1e-7, 1e-8}) EXPECT_EQ(held({*chance}, tolerance).list, "");
 }
 
+/// What has not been looked at yet may see as much as anything can.
+TEST(HardPairs, InterruptedFormFactorsAreWithinTheirErrors) {
+  for (const Entry& e : stored()) {
+    const KnownPair pair = hard_pair(e.family, e.number);
+    const PolygonSoup soup = soup_of(pair);
+    const ExchangeScene scene(soup);
+    for (const int steps : {0, 1, 4, 20, 100}) {
+      PairOptions options;
+      options.tolerance = 1e-9;
+      int left = steps;
+      options.stop = [&] { return left-- <= 0; };
+      const PairFormFactor f = PairIntegrator(scene).form_factor(0, 1, options);
+      EXPECT_LE(std::fabs(f.F - e.F), f.F_error + e.error) << e.family << ' ' << e.number << ' ' << steps;
+    }
+  }
+}
+
 TEST(HardPairs, StoredTruthCanBeFoundAgain) {
   const std::vector<Entry> entries = stored();
   for (std::size_t k = 0; k < entries.size(); k += 10) {
