@@ -121,13 +121,15 @@ std::vector<DirectedEdge> cut_at_vertices(const std::vector<DirectedEdge>& edges
 struct Wing {
   double angle = 0;
   bool up = false;
-  const DirectedEdge* edge = nullptr;
+  std::size_t edge = 0;  ///< of the group
+  std::int64_t polygon = 0;
   bool matched = false;
 };
 
 // Sorted by angle, and where wings lie on each other those first whose back lies on the side where the angles are
 // smaller.
-std::vector<Wing> sort_round_line(std::span<const DirectedEdge> group, std::span<const Polygon> polygons) {
+std::vector<Wing> sort_round_line(std::span<const DirectedEdge> group,
+                                  const std::function<Vec3(std::uint32_t)>& normal) {
   // Wings of faces in contact differ by rounding only.
   constexpr double kSameAngle = 1e-9;
   constexpr double kFullTurn = 2 * std::numbers::pi;
@@ -135,16 +137,16 @@ std::vector<Wing> sort_round_line(std::span<const DirectedEdge> group, std::span
   const Vec3 along = normalized(runs_up(first) ? first.to - first.from : first.from - first.to);
   // A polygon lies to the left of its edge.
   const auto direction = [&](const DirectedEdge& e) {
-    const Vec3 left = cross(area_vector(polygons[e.polygon]), along);
+    const Vec3 left = cross(normal(e.polygon), along);
     return runs_up(e) ? left : -left;
   };
   const Vec3 zero = direction(first);
   std::vector<Wing> wings;
-  for (const DirectedEdge& e : group) {
-    const Vec3 d = direction(e);
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const Vec3 d = direction(group[k]);
     double angle = std::atan2(dot(cross(zero, d), along), dot(zero, d));
     if (angle < -kSameAngle) angle += kFullTurn;
-    wings.push_back({.angle = angle, .up = runs_up(e), .edge = &e});
+    wings.push_back({.angle = angle, .up = runs_up(group[k]), .edge = k, .polygon = group[k].polygon});
   }
   std::ranges::stable_sort(wings, {}, &Wing::angle);
   for (std::size_t i = 1; i < wings.size(); ++i) {
@@ -153,18 +155,32 @@ std::vector<Wing> sort_round_line(std::span<const DirectedEdge> group, std::span
   // The order of equal ones is that of brackets, so that faces that are there twice pair the same way along all their
   // edges.
   std::ranges::stable_sort(wings, {}, [](const Wing& w) {
-    const auto polygon = static_cast<std::int64_t>(w.edge->polygon);
-    return std::tuple{w.angle, !w.up, w.up ? -polygon : polygon};
+    return std::tuple{w.angle, !w.up, w.up ? -w.polygon : w.polygon};
   });
   return wings;
 }
 
-// Wings cancel in pairs that have matter behind them: going round the line, matter begins at an edge that runs down and
-// ends at one that runs up. So solids that touch, and a solid that stands in the corner of a room, stay apart. What
-// finds no partner is open.
+// What finds no partner is open.
 void match_round_line(std::span<const DirectedEdge> group, std::span<const Polygon> polygons, DisjointSets& sets,
                       std::vector<DirectedEdge>& open) {
-  std::vector<Wing> wings = sort_round_line(group, polygons);
+  std::vector<bool> matched(group.size(), false);
+  for (const auto& [i, j] : pairs_round_line(group, [&](std::uint32_t p) { return area_vector(polygons[p]); })) {
+    sets.unite(group[i].polygon, group[j].polygon);
+    matched[i] = matched[j] = true;
+  }
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    if (!matched[k]) open.push_back(group[k]);
+  }
+}
+
+}  // namespace
+
+// Wings cancel in pairs that have matter behind them: going round the line, matter begins at an edge that runs down and
+// ends at one that runs up. So solids that touch, and a solid that stands in the corner of a room, stay apart.
+std::vector<std::pair<std::size_t, std::size_t>> pairs_round_line(std::span<const DirectedEdge> group,
+                                                                  const std::function<Vec3(std::uint32_t)>& normal) {
+  std::vector<Wing> wings = sort_round_line(group, normal);
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
   std::vector<Wing*> begun;
   for (int round = 0; round < 2; ++round) {
     for (Wing& wing : wings) {
@@ -172,18 +188,14 @@ void match_round_line(std::span<const DirectedEdge> group, std::span<const Polyg
       if (!wing.up) {
         if (round == 0) begun.push_back(&wing);
       } else if (!begun.empty()) {
-        sets.unite(wing.edge->polygon, begun.back()->edge->polygon);
+        pairs.emplace_back(begun.back()->edge, wing.edge);
         wing.matched = begun.back()->matched = true;
         begun.pop_back();
       }
     }
   }
-  for (const Wing& wing : wings) {
-    if (!wing.matched) open.push_back(*wing.edge);
-  }
+  return pairs;
 }
-
-}  // namespace
 
 std::vector<DirectedEdge> directed_edges(std::span<const Polygon> polygons) {
   std::vector<DirectedEdge> edges;

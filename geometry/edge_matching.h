@@ -2,7 +2,9 @@
 // Which edges of polygons meet, and what is left open: the topology of a polygon soup, found from exact coordinates.
 
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/polygon.h"
@@ -29,6 +31,13 @@ struct EdgeMatching {
 /// that touch along an edge, or with a whole face, stay two pieces. Repeated vertices make no edge. Takes n log n in
 /// the edges. REQUIRES: finite coordinates.
 EdgeMatching match_edges(std::span<const Polygon> polygons);
+
+/// Of edges between the same two points, those that bound matter between the backs of their polygons, by their indices
+/// in the group: going round the line, matter begins at one and ends at the other. Each edge is in one pair at most.
+/// normal(p): the normal of polygon p, of any length but zero; polygons whose angles round the line differ by less than
+/// 1e-9 are taken to lie on each other.
+std::vector<std::pair<std::size_t, std::size_t>> pairs_round_line(std::span<const DirectedEdge> group,
+                                                                  const std::function<Vec3(std::uint32_t)>& normal);
 
 /// All edges: the outer loops', and the holes', turned round where needed so that the polygon lies to the left.
 std::vector<DirectedEdge> directed_edges(std::span<const Polygon> polygons);

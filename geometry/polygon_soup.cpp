@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "geometry/edge_matching.h"
 #include "geometry/facets.h"
 #include "geometry/shell.h"
 #include "geometry/surface_pieces.h"
@@ -149,10 +150,29 @@ void PolygonSoup::find_neighbours() {
       uses[edge_key(from, to)].push_back({f, facets_[f].first + k, from});
     }
   }
+  const auto join = [&](const Use& one, const Use& other) {
+    corners_[one.corner].neighbour = other.facet;
+    corners_[other.corner].neighbour = one.facet;
+  };
+  std::vector<DirectedEdge> group;
   for (const auto& [key, use] : uses) {
-    if (use.size() != 2 || use[0].from == use[1].from) continue;
-    corners_[use[0].corner].neighbour = use[1].facet;
-    corners_[use[1].corner].neighbour = use[0].facet;
+    const auto up = std::ranges::count(use, use[0].from, &Use::from);
+    if (2 * up != std::ssize(use)) continue;
+    if (use.size() == 2) {
+      join(use[0], use[1]);
+      continue;
+    }
+    // Solids that touch along an edge stay apart.
+    if (std::ranges::any_of(use, [&](const Use& u) { return facets_[u.facet].plane.normal == Vec3{}; })) continue;
+    group.clear();
+    for (const Use& u : use) {
+      const auto c = corners(facets_[u.facet]);
+      const std::size_t k = u.corner - facets_[u.facet].first;
+      group.push_back({c[k].at, c[(k + 1) % c.size()].at, u.facet});
+    }
+    for (const auto& [i, j] : pairs_round_line(group, [&](std::uint32_t f) { return facets_[f].plane.normal; })) {
+      join(use[i], use[j]);
+    }
   }
 }
 

@@ -53,7 +53,7 @@ struct Corner {
   Vec3 at;  ///< vertices()[vertex], here once more because searches for occluders read little else
   std::uint32_t vertex = 0;
   std::uint32_t neighbour =
-      kNone;  ///< the one facet across the edge from this corner to the next; kNone: none, or several
+      kNone;  ///< across the edge from here to the next corner, behind which the same matter lies; kNone: none
 };
 
 /// Corners of a facet side by side: its first four, or those of a triangle and once more the first.

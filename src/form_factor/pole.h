@@ -1,6 +1,6 @@
 #pragma once
-// What makes a rule over a cell converge slowly although nothing happens within, and hides below coefficients that fall:
-// poles near it. Crossings of edges that are nearly parallel as seen from there, and corners close by.
+// What makes a rule over a cell converge slowly although nothing happens within, and hides below coefficients that
+// fall: poles near it. Crossings of edges that are nearly parallel as seen from there, and corners close by.
 
 #include <span>
 
@@ -21,8 +21,8 @@ struct PoleError {
 /// by the pole's size times (1 + δ + √(δ² + 2δ))^-2n. Edges in one plane cross at one point: no pole.
 PoleError crossing_poles(std::span<const SeenEdge> edges, const AreaCell& cell, int order);
 
-/// About a corner that ends an edge as seen from x, in the cell's plane or at a distance d from it, the form factor is a
-/// function of the direction, and smooth only beyond d. A cell much wider than d that begins beside the corner has so
+/// About a corner that ends an edge as seen from x, in the cell's plane or at a distance d from it, the form factor is
+/// a function of the direction, and smooth only beyond d. A cell much wider than d that begins beside the corner has so
 /// little area there, about d², that its coefficients fall as if it saw nothing of this: what is seen there differs by
 /// V, what the edge contributes from beside the corner less what it contributes from the cell's middle. In the interval
 /// [−1, 1] from the cell's point nearest to the corner to the one farthest from it, the corner is a point z of the
