@@ -1,0 +1,73 @@
+#include "src/form_factor/rounded_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "tests/geometry/solids.h"
+
+namespace exitance {
+namespace {
+
+/// Rounds coordinates off all lattices.
+Vec3 turned(const Vec3& p) {
+  const double s = 1.0 / 7;
+  return Vec3{0.1, 0.2, 0.3} + p.x * Vec3{2 * s, 3 * s, 6 * s} + p.y * Vec3{-6 * s, -2 * s, 3 * s} +
+         p.z * Vec3{3 * s, -6 * s, 2 * s};
+}
+
+/// Floor and ceiling of a room of edges of length 8, and between them a post on the floor.
+class Post {
+ public:
+  Post(int top, bool turn) : turn_(turn) {
+    std::vector<Polygon> polygons{{{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {0, 8, 0}}, {}},
+                                  {{{0, 0, 8}, {0, 8, 8}, {8, 8, 8}, {8, 0, 8}}, {}}};
+    for (const Polygon& face : prism({{2, 2}, {5, 2}, {5, 5}, {2, 5}}, 0, top)) polygons.push_back(face);
+    if (turn) {
+      for (Polygon& p : polygons) std::ranges::transform(p.outer, p.outer.begin(), turned);
+    }
+    soup_.emplace(polygons);
+    items_.resize(soup_->facets().size() + soup_->shells().size());
+    std::iota(items_.begin(), items_.end(), 0u);
+  }
+  Source facet(std::uint32_t polygon) const { return {soup_->first_facet(polygon), {}}; }
+  RoundedContact contact(std::uint32_t receiver, std::uint32_t source) const {
+    return {*soup_, facet(receiver), facet(source), items_};
+  }
+  Vec3 at(const Vec3& p) const { return turn_ ? turned(p) : p; }
+
+ private:
+  bool turn_;
+  std::optional<PolygonSoup> soup_;
+  std::vector<std::uint32_t> items_;
+};
+
+TEST(RoundedContact, ExactOnesAreNone) {
+  const Post post(4, false);
+  EXPECT_TRUE(post.contact(0, 1).faces().empty());
+  EXPECT_FALSE(post.contact(0, 1).buries({3, 3, 0}));
+}
+
+TEST(RoundedContact, BuriesWhatTheFootCovers) {
+  const Post post(4, true);
+  const RoundedContact contact = post.contact(0, 1);
+  EXPECT_FALSE(contact.faces().empty());
+  for (const auto& [x, y] : {std::pair{3.0, 3.0}, {2.1, 4.9}, {4.9, 2.1}})
+    EXPECT_TRUE(contact.buries(post.at({x, y, 0})));
+  for (const auto& [x, y] : {std::pair{1.0, 3.0}, {5.1, 4.0}, {3.0, 7.0}})
+    EXPECT_FALSE(contact.buries(post.at({x, y, 0})));
+}
+
+TEST(RoundedContact, ASolidOnTheSourceBuriesWhereItPiercesTheReceiver) {
+  const Post through(9, true), below(4, true);
+  EXPECT_TRUE(through.contact(1, 0).buries(through.at({3, 3, 8})));
+  EXPECT_FALSE(through.contact(1, 0).buries(through.at({1, 3, 8})));
+  EXPECT_FALSE(below.contact(1, 0).buries(below.at({3, 3, 8})));
+}
+
+}  // namespace
+}  // namespace exitance
