@@ -145,15 +145,22 @@ DynamicShot DynamicRadiosity::propagate(std::uint32_t patch) {
   DynamicShot shot{DynamicShot::Kind::propagation, patch, 0, {}};
   const std::vector<double> amount(unshot_.begin() + static_cast<std::ptrdiff_t>(std::size_t{patch} * bands_),
                                    unshot_.begin() + static_cast<std::ptrdiff_t>((std::size_t{patch} + 1) * bands_));
-  const auto n = static_cast<std::uint32_t>(version().elements());
+  const PatchMesh& mesh = version().mesh();
+  const auto n = static_cast<std::uint32_t>(mesh.elements.size());
   std::vector<double> F(n);
   std::vector<std::uint8_t> asked(n);
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n, 128), [&](const auto& some) {
-    for (std::uint32_t e = some.begin(); e < some.end(); ++e) {
-      if (!version().has_element(e) || version().faces_away(e, patch)) continue;
-      asked[e] = 1;
-      F[e] = version().form_factor(e, patch).F;
-      if (F[e] != 0) receive(e, F[e], amount.data());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.patches.size(), 16), [&](const auto& some) {
+    PatchSight& sight = version().sight();
+    for (std::size_t p = some.begin(); p < some.end(); ++p) {
+      if (version().object_of_patch(static_cast<std::uint32_t>(p)) == SceneVersion::kVoid) continue;
+      sight.set(static_cast<std::uint32_t>(p), patch);
+      if (!sight.sees()) continue;
+      const Patch& receiver = mesh.patches[p];
+      for (std::uint32_t e = receiver.element_first; e < receiver.element_first + receiver.element_count; ++e) {
+        asked[e] = 1;
+        F[e] = sight.form_factor(e).F;
+        if (F[e] != 0) receive(e, F[e], amount.data());
+      }
     }
   });
   std::vector<std::uint32_t> lit;

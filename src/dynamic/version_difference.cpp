@@ -58,18 +58,65 @@ class PatchShade {
   std::vector<std::unique_ptr<ShadowVolume>> volumes_;  ///< [piece][caster]
 };
 
+/// Whether something that stays as it is hides all of a patch from a sample point by itself.
+class Screens {
+ public:
+  explicit Screens(const SceneVersion& version) : version_(version), shaft_(version.soup()) {}
+
+  /// items: of the soup's index.
+  bool hide(std::uint32_t patch, std::uint32_t element, std::span<const std::uint32_t> items) {
+    const Element& e = version_.mesh().elements[element];
+    for (const PatchPiece& piece : version_.mesh().pieces_of(version_.mesh().patches[patch])) {
+      shaft_.reset({e.sample, e.normal, e.facet}, {piece.facet, version_.mesh().loop(piece)});
+      if (!shaft_.is_empty() && std::ranges::none_of(items, [&](std::uint32_t item) { return blocks(item); }))
+        return false;
+    }
+    return true;
+  }
+
+ private:
+  bool blocks(std::uint32_t item) {
+    const auto facets = static_cast<std::uint32_t>(version_.soup().facets().size());
+    return item < facets ? shaft_.blocks(item) : shaft_.blocks(version_.soup().shells()[item - facets]);
+  }
+
+  const SceneVersion& version_;
+  PointShaft shaft_;
+};
+
+/// Splits items into those of the objects and others.
+void split_items(const SceneVersion& version, std::span<const std::uint32_t> objects,
+                 std::span<const std::uint32_t> items, bool& some_of_objects, std::vector<std::uint32_t>& others) {
+  const PolygonSoup& soup = version.soup();
+  const auto facets = static_cast<std::uint32_t>(soup.facets().size());
+  some_of_objects = false;
+  others.clear();
+  for (const std::uint32_t item : items) {
+    const std::uint32_t facet = item < facets ? item : soup.shells()[item - facets].facets.front();
+    const bool of_object = std::ranges::any_of(objects, [&](std::uint32_t object) {
+      const ObjectSlot& slot = version.slot(object);
+      return slot.present && slot.facet_first <= facet && facet < slot.facet_last;
+    });
+    some_of_objects = some_of_objects || of_object;
+    if (!of_object) others.push_back(item);
+  }
+}
+
 }  // namespace
 
 struct VersionDifference::Scratch {
+  explicit Scratch(const VersionDifference& d)
+      : before(*d.before_, d.old_), after(*d.after_, d.new_), screens(*d.after_) {}
+
   PatchShade before, after;
+  Screens screens;
+  std::vector<std::uint32_t> stays, unused;  ///< items of the index that stand between and do not change
 };
 
 VersionDifference::VersionDifference(std::shared_ptr<const SceneVersion> before,
                                      std::shared_ptr<const SceneVersion> after)
     : before_(std::move(before)), after_(std::move(after)), objects_(after_->changed_since(*before_)),
-      scratch_([this] {
-        return std::make_unique<Scratch>(Scratch{PatchShade(*before_, old_), PatchShade(*after_, new_)});
-      }) {
+      scratch_([this] { return std::make_unique<Scratch>(*this); }) {
   const auto add = [](const SceneVersion& version, std::uint32_t object, auto& casters) {
     const ObjectSlot& slot = version.slot(object);
     if (slot.present)
@@ -107,46 +154,67 @@ void VersionDifference::find_candidates(std::uint32_t patch, std::vector<std::ui
   found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
-void VersionDifference::evaluate(std::uint32_t element, std::uint32_t patch, Search search, Scratch& scratch,
-                                 FormFactorChange& change, ChangeWork& work) const {
-  change.element = element;
-  const auto F = [&](const SceneVersion& version) {
-    if (version.faces_away(element, patch)) return 0.0;
-    ++work.visibility_tests;
-    const PointFormFactor f = version.form_factor(element, patch);
-    change.error += f.error;
-    return f.F;
+/// Elements of one patch, whose numbers stand in `changes`.
+void VersionDifference::compare(std::uint32_t receiver, std::uint32_t patch, Search search, Scratch& scratch,
+                                std::span<FormFactorChange> changes, ChangeWork& work) const {
+  const bool stays = after_->same_in(*before_, after_->object_of_patch(receiver)), kept = keeps(patch);
+  if (kept && stays && search == Search::shadow_volumes)
+    return compare_in_shadow(receiver, patch, scratch, changes, work);
+  const auto look = [&](const SceneVersion& version, double FormFactorChange::*F) {
+    PatchSight& sight = version.sight();
+    sight.set(receiver, patch);
+    if (!sight.sees()) return;
+    for (FormFactorChange& c : changes) {
+      const PointFormFactor f = sight.form_factor(c.element);
+      c.*F = f.F;
+      c.error += f.error;
+      ++c.tests;
+    }
   };
-  const bool stays = after_->same_in(*before_, after_->object_of_element(element));
-  if (!keeps(patch)) {
-    if (stays) change.before = F(*before_);
-  } else if (!stays) {
-    change.after = F(*after_);
-  } else if (search == Search::everywhere) {
-    change.before = F(*before_);
-    change.after = F(*after_);
-  } else {
-    if (after_->faces_away(element, patch)) return;
+  if (stays) look(*before_, &FormFactorChange::before);
+  if (kept) look(*after_, &FormFactorChange::after);
+}
+
+void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t patch, Scratch& scratch,
+                                          std::span<FormFactorChange> changes, ChangeWork& work) const {
+  PatchSight &sight_before = before_->sight(), &sight_after = after_->sight();
+  bool was_between = false, is_between = false;
+  sight_before.set(receiver, patch);
+  split_items(*before_, objects_, sight_before.between(), was_between, scratch.unused);
+  sight_after.set(receiver, patch);
+  split_items(*after_, objects_, sight_after.between(), is_between, scratch.stays);
+  if (!was_between && !is_between) return;
+  if (!sight_before.sees() && !sight_after.sees()) return;
+  scratch.before.set_patch(patch);
+  scratch.after.set_patch(patch);
+  for (FormFactorChange& c : changes) {
     ++work.candidates;
-    scratch.before.set_patch(patch);
-    scratch.after.set_patch(patch);
-    const Shade was = scratch.before.of(element), is = scratch.after.of(element);
-    if (was == Shade::outside && is == Shade::outside) return;
+    const auto F = [&](PatchSight& sight) {
+      if (!sight.sees()) return 0.0;
+      ++c.tests;
+      const PointFormFactor f = sight.form_factor(c.element);
+      c.error += f.error;
+      return f.F;
+    };
+    const Shade was = was_between ? scratch.before.of(c.element) : Shade::outside,
+                is = is_between ? scratch.after.of(c.element) : Shade::outside;
+    if (was == Shade::outside && is == Shade::outside) continue;
     if (was == Shade::umbra && is == Shade::umbra) {
       ++work.kept;
-      return;
+      continue;
     }
+    if (scratch.screens.hide(patch, c.element, scratch.stays)) continue;
     // Where no old shape hides anything new ones can only take: what is not seen before is not seen after; and the
     // other way round.
     if (was == Shade::outside) {
-      change.before = F(*before_);
-      if (is != Shade::umbra && change.before > 0) change.after = F(*after_);
+      c.before = F(sight_before);
+      if (is != Shade::umbra && c.before > 0) c.after = F(sight_after);
     } else if (is == Shade::outside) {
-      change.after = F(*after_);
-      if (was != Shade::umbra && change.after > 0) change.before = F(*before_);
+      c.after = F(sight_after);
+      if (was != Shade::umbra && c.after > 0) c.before = F(sight_before);
     } else {
-      if (was != Shade::umbra) change.before = F(*before_);
-      if (is != Shade::umbra) change.after = F(*after_);
+      if (was != Shade::umbra) c.before = F(sight_before);
+      if (is != Shade::umbra) c.after = F(sight_after);
     }
   }
 }
@@ -161,18 +229,27 @@ std::vector<FormFactorChange> VersionDifference::column(std::uint32_t patch, Sea
     find_candidates(patch, elements);
   }
   std::vector<FormFactorChange> changes(elements.size());
-  std::vector<ChangeWork> works(elements.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, elements.size(), 16), [&](const auto& some) {
+  std::vector<std::size_t> first;  // of each patch's elements
+  const auto patch_of = [&](std::size_t k) { return after_->mesh().elements[elements[k]].patch; };
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    changes[k].element = elements[k];
+    if (k == 0 || patch_of(k) != patch_of(k - 1)) first.push_back(k);
+  }
+  const std::size_t patches = first.size();
+  first.push_back(elements.size());
+  std::vector<ChangeWork> works(patches);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches, 4), [&](const auto& some) {
     Scratch& scratch = *scratch_.local();
-    for (std::size_t k = some.begin(); k < some.end(); ++k)
-      evaluate(elements[k], patch, search, scratch, changes[k], works[k]);
+    for (std::size_t k = some.begin(); k < some.end(); ++k) {
+      compare(patch_of(first[k]), patch, search, scratch,
+              std::span(changes).subspan(first[k], first[k + 1] - first[k]), works[k]);
+    }
   });
-  for (std::size_t k = 0; k < works.size(); ++k) {
-    const FormFactorChange& c = changes[k];
+  for (const ChangeWork& w : works) work += w;
+  for (const FormFactorChange& c : changes) {
     // Equal but for rounding: what they differ by is less than they may be wrong by.
-    const bool equal = std::abs(c.after - c.before) <= c.error;
-    if (equal) works[k].idle_tests = works[k].visibility_tests;
-    work += works[k];
+    work.visibility_tests += c.tests;
+    if (std::abs(c.after - c.before) <= c.error) work.idle_tests += c.tests;
   }
   std::erase_if(changes, [](const FormFactorChange& c) { return c.before == c.after; });
   return changes;

@@ -15,6 +15,7 @@ struct FormFactorChange {
   std::uint32_t element = 0;
   double before = 0, after = 0;
   double error = 0;  ///< bound of that of after − before
+  std::uint32_t tests = 0;  ///< form factors that were computed for it
 };
 
 /// What the search for changed form factors took.
@@ -65,8 +66,10 @@ class VersionDifference {
   struct Scratch;
 
   void find_candidates(std::uint32_t patch, std::vector<std::uint32_t>& found) const;
-  void evaluate(std::uint32_t element, std::uint32_t patch, Search search, Scratch& scratch, FormFactorChange& change,
-                ChangeWork& work) const;
+  void compare(std::uint32_t receiver, std::uint32_t patch, Search search, Scratch& scratch,
+               std::span<FormFactorChange> changes, ChangeWork& work) const;
+  void compare_in_shadow(std::uint32_t receiver, std::uint32_t patch, Scratch& scratch,
+                         std::span<FormFactorChange> changes, ChangeWork& work) const;
 
   std::shared_ptr<const SceneVersion> before_, after_;
   std::vector<std::uint32_t> objects_;
