@@ -33,7 +33,8 @@ SceneVersion::SceneVersion(const EditedScene& scene, const MeshOptions& options)
 
 SceneVersion::SceneVersion(const SceneVersion& before, const EditedScene& scene, const MeshOptions& options,
                            std::uint32_t object)
-    : soup_(make_soup(scene.scene())),
+    : serial_(before.serial_ + 1),
+      soup_(make_soup(scene.scene())),
       visibility_(mesh_, soup_),
       slots_(before.slots_),
       observers_([this] { return visibility_.observer(); }),

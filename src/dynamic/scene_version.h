@@ -43,6 +43,8 @@ class SceneVersion {
   SceneVersion(const SceneVersion&) = delete;
   SceneVersion& operator=(const SceneVersion&) = delete;
 
+  /// Counts versions that are made from one another, from 0.
+  std::uint64_t serial() const { return serial_; }
   const PolygonSoup& soup() const { return soup_; }
   const PatchMesh& mesh() const { return mesh_; }
   std::size_t patches() const { return mesh_.patches.size(); }
@@ -99,6 +101,7 @@ class SceneVersion {
     return then.present && slots_[object].present && then.pose == slots_[object].pose;
   }
 
+  std::uint64_t serial_ = 0;
   PolygonSoup soup_;
   PatchMesh mesh_;
   ExactVisibility visibility_;

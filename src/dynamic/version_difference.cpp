@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "src/dynamic/form_factor_column.h"
+
 namespace exitance {
 namespace {
 
@@ -84,6 +86,12 @@ class Screens {
   PointShaft shaft_;
 };
 
+double entry(const FormFactorColumn& column, std::uint32_t element) {
+  const auto at = std::ranges::lower_bound(column.element, element);
+  return at != column.element.end() && *at == element ? column.F[static_cast<std::size_t>(at - column.element.begin())]
+                                                      : 0.0;
+}
+
 /// Splits items into those of the objects and others.
 void split_items(const SceneVersion& version, std::span<const std::uint32_t> objects,
                  std::span<const std::uint32_t> items, bool& some_of_objects, std::vector<std::uint32_t>& others) {
@@ -155,11 +163,12 @@ void VersionDifference::find_candidates(std::uint32_t patch, std::vector<std::ui
 }
 
 /// Elements of one patch, whose numbers stand in `changes`.
-void VersionDifference::compare(std::uint32_t receiver, std::uint32_t patch, Search search, Scratch& scratch,
-                                std::span<FormFactorChange> changes, ChangeWork& work) const {
+void VersionDifference::compare(std::uint32_t receiver, std::uint32_t patch, Search search,
+                                const FormFactorColumn* known, Scratch& scratch, std::span<FormFactorChange> changes,
+                                ChangeWork& work) const {
   const bool stays = after_->same_in(*before_, after_->object_of_patch(receiver)), kept = keeps(patch);
   if (kept && stays && search == Search::shadow_volumes)
-    return compare_in_shadow(receiver, patch, scratch, changes, work);
+    return compare_in_shadow(receiver, patch, known, scratch, changes, work);
   const auto look = [&](const SceneVersion& version, double FormFactorChange::*F) {
     PatchSight& sight = version.sight();
     sight.set(receiver, patch);
@@ -171,12 +180,17 @@ void VersionDifference::compare(std::uint32_t receiver, std::uint32_t patch, Sea
       ++c.tests;
     }
   };
-  if (stays) look(*before_, &FormFactorChange::before);
+  if (stays && known != nullptr) {
+    for (FormFactorChange& c : changes) c.before = entry(*known, c.element);
+  } else if (stays) {
+    look(*before_, &FormFactorChange::before);
+  }
   if (kept) look(*after_, &FormFactorChange::after);
 }
 
-void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t patch, Scratch& scratch,
-                                          std::span<FormFactorChange> changes, ChangeWork& work) const {
+void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t patch, const FormFactorColumn* known,
+                                          Scratch& scratch, std::span<FormFactorChange> changes,
+                                          ChangeWork& work) const {
   PatchSight &sight_before = before_->sight(), &sight_after = after_->sight();
   bool was_between = false, is_between = false;
   sight_before.set(receiver, patch);
@@ -189,13 +203,6 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
   scratch.after.set_patch(patch);
   for (FormFactorChange& c : changes) {
     ++work.candidates;
-    const auto F = [&](PatchSight& sight) {
-      if (!sight.sees()) return 0.0;
-      ++c.tests;
-      const PointFormFactor f = sight.form_factor(c.element);
-      c.error += f.error;
-      return f.F;
-    };
     const Shade was = was_between ? scratch.before.of(c.element) : Shade::outside,
                 is = is_between ? scratch.after.of(c.element) : Shade::outside;
     if (was == Shade::outside && is == Shade::outside) continue;
@@ -204,22 +211,28 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
       continue;
     }
     if (scratch.screens.hide(patch, c.element, scratch.stays)) continue;
+    const auto F = [&](PatchSight& sight, Shade shade) {
+      if (shade == Shade::umbra || !sight.sees()) return 0.0;
+      ++c.tests;
+      const PointFormFactor f = sight.form_factor(c.element);
+      c.error += f.error;
+      return f.F;
+    };
+    const auto F_before = [&] { return known != nullptr ? entry(*known, c.element) : F(sight_before, was); };
     // Where no old shape hides anything new ones can only take: what is not seen before is not seen after; and the
     // other way round.
-    if (was == Shade::outside) {
-      c.before = F(sight_before);
-      if (is != Shade::umbra && c.before > 0) c.after = F(sight_after);
-    } else if (is == Shade::outside) {
-      c.after = F(sight_after);
-      if (was != Shade::umbra && c.after > 0) c.before = F(sight_before);
+    if (is == Shade::outside && known == nullptr) {
+      c.after = F(sight_after, is);
+      if (c.after > 0) c.before = F_before();
     } else {
-      if (was != Shade::umbra) c.before = F(sight_before);
-      if (is != Shade::umbra) c.after = F(sight_after);
+      c.before = F_before();
+      if (was != Shade::outside || c.before > 0) c.after = F(sight_after, is);
     }
   }
 }
 
-std::vector<FormFactorChange> VersionDifference::column(std::uint32_t patch, Search search, ChangeWork& work) const {
+std::vector<FormFactorChange> VersionDifference::column(std::uint32_t patch, Search search,
+                                                                const FormFactorColumn* known, ChangeWork& work) const {
   std::vector<std::uint32_t> elements;
   if (search == Search::everywhere || !keeps(patch)) {
     for (std::uint32_t e = 0; e < after_->elements(); ++e) {
@@ -241,15 +254,15 @@ std::vector<FormFactorChange> VersionDifference::column(std::uint32_t patch, Sea
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches, 4), [&](const auto& some) {
     Scratch& scratch = *scratch_.local();
     for (std::size_t k = some.begin(); k < some.end(); ++k) {
-      compare(patch_of(first[k]), patch, search, scratch,
+      compare(patch_of(first[k]), patch, search, known, scratch,
               std::span(changes).subspan(first[k], first[k + 1] - first[k]), works[k]);
     }
   });
   for (const ChangeWork& w : works) work += w;
   for (const FormFactorChange& c : changes) {
-    // Equal but for rounding: what they differ by is less than they may be wrong by.
+    // Equal but for rounding: what they differ by is less than they may be wrong by, of which one alone may be known.
     work.visibility_tests += c.tests;
-    if (std::abs(c.after - c.before) <= c.error) work.idle_tests += c.tests;
+    if (std::abs(c.after - c.before) <= 2 * c.error) work.idle_tests += c.tests;
   }
   std::erase_if(changes, [](const FormFactorChange& c) { return c.before == c.after; });
   return changes;

@@ -120,8 +120,8 @@ TEST(DynamicRadiosity, ShadowVolumesMissNothingThatLookingEverywhereFinds) {
     for (std::uint32_t p = 0; p < version->patches(); ++p) {
       if (version->object_of_patch(p) == SceneVersion::kVoid) continue;
       ChangeWork all, some;
-      const auto everywhere = difference.column(p, VersionDifference::Search::everywhere, all);
-      const auto found = difference.column(p, VersionDifference::Search::shadow_volumes, some);
+      const auto everywhere = difference.column(p, VersionDifference::Search::everywhere, nullptr, all);
+      const auto found = difference.column(p, VersionDifference::Search::shadow_volumes, nullptr, some);
       auto at = found.begin();
       for (const FormFactorChange& c : everywhere) {
         if (std::fabs(c.after - c.before) <= c.error + 1e-15) continue;
