@@ -210,6 +210,7 @@ class Dynamic {
     frame["visibility_tests"] = work.propagation.visibility_tests + work.redistribution.visibility_tests;
     frame["redistribution_tests"] = work.redistribution.visibility_tests;
     frame["redistribution_tests_idle"] = work.redistribution.idle_tests;
+    frame["redistribution_tests_idle_patches"] = work.redistribution.idle_patch_tests;
     frame["elements_kept_in_umbra"] = work.redistribution.kept;
     frame["error"] = error ? Json(error->all) : Json(nullptr);
     frame["error_worst_1_percent"] = error ? Json(error->worst_1_percent) : Json(nullptr);

@@ -31,14 +31,15 @@ class PatchShade {
   }
 
   /// Outside: no object hides anything of any piece. Umbra: every piece is hidden as a whole by one of them.
-  Shade of(std::uint32_t element) {
+  /// So it is, too, where one of the screens, items of the index that stay as they are, hides what the object would.
+  Shade of(std::uint32_t element, std::span<const std::uint32_t> screens) {
     const Element& e = version_.mesh().elements[element];
     const Receiver receiver{e.sample, e.normal, e.facet};
     bool some = false, all = !casters_.empty();
     for (std::size_t k = 0; k < pieces_; ++k) {
       Shade most = Shade::outside;
       for (std::size_t c = 0; c < casters_.size() && most != Shade::umbra; ++c)
-        most = std::max(most, volumes_[k * casters_.size() + c]->at(receiver));
+        most = std::max(most, volumes_[k * casters_.size() + c]->at(receiver, screens));
       some = some || most != Shade::outside;
       all = all && most == Shade::umbra;
     }
@@ -118,7 +119,7 @@ struct VersionDifference::Scratch {
 
   PatchShade before, after;
   Screens screens;
-  std::vector<std::uint32_t> stays, unused;  ///< items of the index that stand between and do not change
+  std::vector<std::uint32_t> stays_before, stays;  ///< items of either index that stand between and do not change
 };
 
 VersionDifference::VersionDifference(std::shared_ptr<const SceneVersion> before,
@@ -194,7 +195,7 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
   PatchSight &sight_before = before_->sight(), &sight_after = after_->sight();
   bool was_between = false, is_between = false;
   sight_before.set(receiver, patch);
-  split_items(*before_, objects_, sight_before.between(), was_between, scratch.unused);
+  split_items(*before_, objects_, sight_before.between(), was_between, scratch.stays_before);
   sight_after.set(receiver, patch);
   split_items(*after_, objects_, sight_after.between(), is_between, scratch.stays);
   if (!was_between && !is_between) return;
@@ -203,8 +204,8 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
   scratch.after.set_patch(patch);
   for (FormFactorChange& c : changes) {
     ++work.candidates;
-    const Shade was = was_between ? scratch.before.of(c.element) : Shade::outside,
-                is = is_between ? scratch.after.of(c.element) : Shade::outside;
+    const Shade was = was_between ? scratch.before.of(c.element, scratch.stays_before) : Shade::outside,
+                is = is_between ? scratch.after.of(c.element, scratch.stays) : Shade::outside;
     if (was == Shade::outside && is == Shade::outside) continue;
     if (was == Shade::umbra && is == Shade::umbra) {
       ++work.kept;
@@ -259,10 +260,21 @@ std::vector<FormFactorChange> VersionDifference::column(std::uint32_t patch, Sea
     }
   });
   for (const ChangeWork& w : works) work += w;
-  for (const FormFactorChange& c : changes) {
-    // Equal but for rounding: what they differ by is less than they may be wrong by, of which one alone may be known.
-    work.visibility_tests += c.tests;
-    if (std::abs(c.after - c.before) <= 2 * c.error) work.idle_tests += c.tests;
+  for (std::size_t k = 0; k < patches; ++k) {
+    std::uint64_t tests = 0;
+    bool idle = true;
+    for (std::size_t i = first[k]; i < first[k + 1]; ++i) {
+      const FormFactorChange& c = changes[i];
+      tests += c.tests;
+      // Equal but for rounding: what they differ by is less than they may be wrong by, of which one alone may be known.
+      if (std::abs(c.after - c.before) <= 2 * c.error) {
+        work.idle_tests += c.tests;
+      } else {
+        idle = false;
+      }
+    }
+    work.visibility_tests += tests;
+    if (idle) work.idle_patch_tests += tests;
   }
   std::erase_if(changes, [](const FormFactorChange& c) { return c.before == c.after; });
   return changes;

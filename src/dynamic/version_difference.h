@@ -26,12 +26,14 @@ struct ChangeWork {
   std::uint64_t kept = 0;              ///< of those, in the umbra before and after: nothing to do
   std::uint64_t visibility_tests = 0;  ///< form factors that were computed
   std::uint64_t idle_tests = 0;        ///< of those, for elements whose form factor did not change
+  std::uint64_t idle_patch_tests = 0;  ///< of those, for patches none of whose elements' did
 
   ChangeWork& operator+=(const ChangeWork& other) {
     candidates += other.candidates;
     kept += other.kept;
     visibility_tests += other.visibility_tests;
     idle_tests += other.idle_tests;
+    idle_patch_tests += other.idle_patch_tests;
     return *this;
   }
 };
