@@ -21,9 +21,8 @@
 #include "src/cli/verbs.h"
 #include "src/dynamic/converged_reference.h"
 #include "src/dynamic/edit_session.h"
+#include "src/dynamic/picture.h"
 #include "src/dynamic/trespass.h"
-#include "src/output/image.h"
-#include "src/output/mesh_faces.h"
 #include "src/output/result_folder.h"
 #include "src/output/vtk.h"
 #include "src/output/whole_file.h"
@@ -69,6 +68,7 @@ class Dynamic {
         ->check(whole_number_between(0));
     verb.add_option("--budget-ms", budget_ms_, "Milliseconds a frame after the first; 0: none")->check(number_between(0));
     verb.add_option("--replay", replay_, "frames.json of an earlier run whose numbers of shots to repeat");
+    verb.add_flag("!--no-log", options_.log, "Forget what an edit interrupts: it is never redistributed");
     verb.add_flag("--work-off", work_off_, "After the last event one more frame that works off all that was left");
     verb.add_flag("!--no-reference", reference_, "Leave out the converged references, and with them the errors");
     verb.add_option("--references", reference_file_,
@@ -165,11 +165,10 @@ class Dynamic {
     }
   }
 
-  std::string apply(const Event& event, EditSession& session, std::optional<FrameReferences>& references) const {
+  std::string apply(const Event& event, EditSession& session, std::optional<FrameReferences>& references) {
     session.apply(event.edit);
     if (references) references->apply(event.edit);
-    for (const std::string& warning : find_trespass(session.scene(), session.solution().version(), event.edit.object))
-      print_warning(fmt::format("{}:{}: {}", path_, event.line, warning));
+    moved_[event.edit.object] = event.line;
     return fmt::format("{} {}", name_of(event.edit.operation), session.scene().scene().objects[event.edit.object].name);
   }
 
@@ -189,6 +188,11 @@ class Dynamic {
     last_ = !edits.empty() && edits.front() == "work off";
     const SessionWork work = session.work(budget());
     const DynamicRadiosity& state = session.solution();
+    // Only now is an object that is selected where it is shown.
+    for (const auto& [object, line] : std::exchange(moved_, {})) {
+      for (const std::string& warning : find_trespass(session.scene(), state.version(), object))
+        print_warning(fmt::format("{}:{}: {}", path_, line, warning));
+    }
     const std::vector<double> B = state.element_B();
     std::optional<ConvergenceError> error;
     if (references && !partial_) {
@@ -242,22 +246,16 @@ class Dynamic {
   }
 
   void draw(const DynamicScene& given, const EditSession& session, double time, const std::vector<double>& B) const {
-    const SceneVersion& version = session.solution().version();
-    const Faces faces = faces_of(version.mesh(), version.soup());
-    const Discretisation d = session.solution().discretisation();
-    std::vector<std::uint8_t> emits(version.elements());
-    for (std::uint32_t e = 0; e < emits.size(); ++e) {
-      for (std::uint32_t b = 0; b < d.bands; ++b)
-        emits[e] = emits[e] != 0 || d.E[std::size_t{version.mesh().elements[e].patch} * d.bands + b] > 0;
-    }
+    const DynamicRadiosity& state = session.solution();
+    const Faces faces = faces_of(state.version());
     const Camera camera = !given.camera_path.empty() ? camera_at(given.camera_path, time)
                           : given.scene.camera       ? *given.scene.camera
                                                      : default_camera(faces.points(), is_closed(given.scene));
     const std::string name = fmt::format("frame_{:03}", frames_.size());
-    write_png(draft_ / (name + ".png"), render(faces, {d.bands, B, emits, {}}, camera));
+    write_png(draft_ / (name + ".png"), picture(state, B, camera));
     VtkArray exitance{"B", given.scene.unit, {}, B};
-    if (d.bands == 3) exitance.components = {"R", "G", "B"};
-    for (std::uint32_t b = 0; d.bands != 1 && d.bands != 3 && b < d.bands; ++b)
+    if (state.bands() == 3) exitance.components = {"R", "G", "B"};
+    for (std::uint32_t b = 0; state.bands() != 1 && state.bands() != 3 && b < state.bands(); ++b)
       exitance.components.push_back(fmt::format("band {}", b));
     write_vtp(draft_ / (name + ".vtp"), faces, {&exitance, 1});
   }
@@ -274,6 +272,7 @@ class Dynamic {
   Clock::time_point start_;
   std::filesystem::path draft_;
   std::optional<ReferenceStore> store_;
+  std::map<std::uint32_t, std::uint32_t> moved_;  // objects of this frame's edits, and the lines of the last of these
   std::vector<std::uint64_t> replayed_;
   std::vector<double> reference_before_;
   Json frames_ = Json::array();

@@ -136,6 +136,20 @@ void DynamicRadiosity::change_geometry(std::shared_ptr<const SceneVersion> next,
   set_materials(scene, object);
 }
 
+void DynamicRadiosity::forget_changes() {
+  for (std::size_t k = 0; k + 1 < layers_.size(); ++k) {
+    for (std::uint32_t p = 0; p < version().patches(); ++p) {
+      const std::uint32_t object = version().object_of_patch(p);
+      if (object == SceneVersion::kVoid || !version().same_in(*layers_[k].version, object)) continue;
+      for (std::size_t i = std::size_t{p} * bands_; i < (std::size_t{p} + 1) * bands_; ++i) {
+        layers_.back().shot[i].add(layers_[k].shot[i].high());
+        layers_.back().shot[i].add(layers_[k].shot[i].low());
+      }
+    }
+  }
+  layers_.erase(layers_.begin(), layers_.end() - 1);
+}
+
 void DynamicRadiosity::change_materials(const Scene& scene, std::uint32_t object) {
   set_materials(scene, object);
 }
@@ -232,6 +246,11 @@ DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t pat
   refresh(patch);
   drop_empty_layers();
   return shot;
+}
+
+void DynamicRadiosity::set_importance(const ImportanceOptions& options) {
+  importance_ = options;
+  for (Layer& layer : layers_) layer.importance.reset();
 }
 
 double DynamicRadiosity::redistribution_energy(std::size_t change, std::uint32_t patch) const {

@@ -85,6 +85,10 @@ class DynamicRadiosity {
   /// Forgets all that was shot, and all form factors.
   void start_over();
 
+  /// What was shot in older versions counts as shot in the present one, and what changed objects shot as gone with them:
+  /// nothing is pending any more, and what was not redistributed stays wrong (the paper's solution without a log).
+  void forget_changes();
+
   /// Shoots all of a patch's unshot radiosity.
   DynamicShot propagate(std::uint32_t patch);
   /// Redistributes what a patch shot in an older version. REQUIRES: change < pending_changes().
@@ -96,7 +100,7 @@ class DynamicRadiosity {
 
   /// Of a pending change, by patch: [m²] power that reaches what changed, of the unit exitance that the patch has shot;
   /// the patch's own area where it is to take back all. Computed when first asked for.
-  void set_importance(const ImportanceOptions& options) { importance_ = options; }
+  void set_importance(const ImportanceOptions& options);
   /// What decides the order: the luminance of what a patch has shot times its importance [W or lm].
   double redistribution_energy(std::size_t change, std::uint32_t patch) const;
   bool has_shot(std::uint32_t patch) const;  ///< by the present version
