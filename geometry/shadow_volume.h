@@ -58,8 +58,9 @@ class ShadowVolume {
   /// The shooter is convex: a facet or a piece of one.
   void set_shooter(const ShaftEnd& shooter);
 
-  /// Of a sample point.
-  Shade at(const Receiver& receiver);
+  /// Of a sample point. screens: items of the soup's index, none of the object's; facets of the object that one of them
+  /// hides from the point as a whole, or hides all behind them, take nothing.
+  Shade at(const Receiver& receiver, std::span<const std::uint32_t> screens = {});
 
   /// Of a polygon: outside, or umbra, where that holds for all lines between interior points (Shaft).
   Shade of(const ShaftEnd& receiver);
@@ -75,6 +76,8 @@ class ShadowVolume {
 
  private:
   bool lies_over(const Receiver& receiver) const;
+  bool is_screened(const Vec3& from, std::uint32_t facet, std::span<const std::uint32_t> screens);
+  bool screens_all(const Vec3& from, std::uint32_t facet, std::uint32_t item);
 
   const ShadowCaster& caster_;
   ShaftEnd shooter_;

@@ -212,10 +212,10 @@ bool Shaft::beside(std::uint32_t facet) {
 }
 
 bool Shaft::enters(std::uint32_t facet) {
-  if (beside(facet)) return false;
   const Facet& f = soup_.facets()[facet];
   const auto corners = soup_.corners(f);
   const auto at_sight = region_.meets_at_sight(corners, counts_);
+  if (at_sight == false || beside(facet)) return false;
   return at_sight ? *at_sight : region_.meets(corners, f.plane.points, counts_);
 }
 

@@ -59,6 +59,12 @@ bool View::holds_receiver(std::uint32_t facet) {
                    : std::fabs(n.y) >= std::fabs(n.z)                                   ? 1
                                                                                         : 2;
   const auto loop = soup_.corners(f);
+  for (const int other : {(axis + 1) % 3, (axis + 2) % 3}) {
+    const double at = receiver_.point[other];
+    if (std::ranges::all_of(loop, [&](const Corner& c) { return c.at[other] <= at; }) ||
+        std::ranges::all_of(loop, [&](const Corner& c) { return c.at[other] >= at; }))
+      return false;
+  }
   for (std::size_t k = 0; k < loop.size(); ++k) {
     Vec3 p = soup_.vertices()[loop[k].vertex], q = soup_.vertices()[loop[(k + 1) % loop.size()].vertex];
     Vec3 v = receiver_.point, above = p;  // three points in the plane of projection and one on the normal's side of it

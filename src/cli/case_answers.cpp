@@ -12,6 +12,8 @@
 namespace exitance {
 namespace {
 
+constexpr double kUnitRoundoff = 0x1p-53;
+
 using Json = nlohmann::ordered_json;
 
 /// Points that each integral of so many pairs may take, so that the whole of it ends within a minute.
@@ -214,8 +216,50 @@ void add_uncertain_source(const SolvedEnclosure& before, const SolvedEnclosure& 
   }
 }
 
-/// R of George, Sillion and Greenberg 1990, eq. 5, with ρ_i as the equation needs it, and ΔB (eq. 6) as the difference
-/// of the two solutions.
+struct Change {
+  std::vector<double> dB, dB_error;
+};
+
+/// ΔB = R + ΔE + Δρ H_before + ρ F_after ΔB (eq. 6, with what changes of the patches themselves), solved for the patches
+/// that are there after; a patch that is not loses all that it had. Errors: those of the right side may all add up.
+Change solve_change(const SolvedEnclosure& before, const SolvedEnclosure& after, const CasePatches& given_before,
+                    const CasePatches& given_after, const std::vector<double>& R, const std::vector<double>& R_error) {
+  const std::size_t bands = given_before.bands;
+  Change change{std::vector<double>(R.size()), std::vector<double>(R.size())};
+  for (std::size_t i = 0; i < R.size(); ++i) {
+    change.dB[i] = -before.values.B[i];
+    change.dB_error[i] = before.values.B_error[i];
+  }
+  std::vector<double> H(R.size()), H_error(R.size());
+  add_irradiance(before, 1, before.values.B, bands, H, H_error);
+  double B_error = 0;
+  for (const double error : before.values.B_error) B_error = std::max(B_error, error);
+  std::vector<bool> was(given_before.patches.size());
+  for (const std::size_t p : before.enclosure.present) was[p] = true;
+  std::vector<double> source, rho;
+  std::vector<double> worst(bands), max_rho(bands);
+  for (const std::size_t p : after.enclosure.present) {
+    for (std::size_t b = 0; b < bands; ++b) {
+      const std::size_t i = p * bands + b;
+      const double drho = was[p] ? given_after.patches[p].rho[b] - given_before.patches[p].rho[b] : 0;
+      const double E_before = was[p] ? given_before.patches[p].E[b] : 0;
+      source.push_back(R[i] + (given_after.patches[p].E[b] - E_before) + drho * before.values.H[i]);
+      rho.push_back(given_after.patches[p].rho[b]);
+      worst[b] = std::max(worst[b], R_error[i] + std::fabs(drho) * (H_error[i] + B_error) +
+                                        4 * kUnitRoundoff * std::fabs(source.back()));
+      max_rho[b] = std::max(max_rho[b], rho.back());
+    }
+  }
+  const PatchRadiosity found = patch_radiosity(after.enclosure.form_factors, source, rho, bands);
+  for (std::size_t k = 0; k < found.B.size(); ++k) {
+    const std::size_t b = k % bands, i = after.enclosure.present[k / bands] * bands + b;
+    change.dB[i] = found.B[k];
+    change.dB_error[i] = found.B_error[k] + worst[b] / (1 - max_rho[b]) * (1 + 1e-12);
+  }
+  return change;
+}
+
+/// R of George, Sillion and Greenberg 1990, eq. 5, with ρ_i as the equation needs it, and ΔB, the solution of eq. 6.
 void answer_dynamic(const nlohmann::json& question, double tolerance, Json& result) {
   for (const char* side : {"before", "after"}) {
     if (!question.contains(side)) throw InvalidCase(std::string("the key \"") + side + "\" is missing");
@@ -233,7 +277,7 @@ void answer_dynamic(const nlohmann::json& question, double tolerance, Json& resu
   const SolvedEnclosure after = solve(given_after, "after.", tolerance);
 
   const std::size_t size = before.values.B.size();
-  std::vector<double> R(size), R_error(size), dB(size), dB_error(size);
+  std::vector<double> R(size), R_error(size);
   add_irradiance(before, -1, before.values.B, bands, R, R_error);
   add_irradiance(after, 1, before.values.B, bands, R, R_error);
   add_uncertain_source(before, after, bands, R_error);
@@ -241,15 +285,14 @@ void answer_dynamic(const nlohmann::json& question, double tolerance, Json& resu
     const double rho = given_after.patches[i / bands].rho[i % bands];
     R[i] *= rho;
     R_error[i] *= rho;
-    dB[i] = after.values.B[i] - before.values.B[i];
-    dB_error[i] = after.values.B_error[i] + before.values.B_error[i];
   }
+  const Change change = solve_change(before, after, given_before, given_after, R, R_error);
   CasePatches shape = given_before;
   shape.bands_in_lists = given_before.bands_in_lists || given_after.bands_in_lists;
   result["R"] = by_patch(R, shape);
   result["R_error"] = by_patch(R_error, shape);
-  result["dB"] = by_patch(dB, shape);
-  result["dB_error"] = by_patch(dB_error, shape);
+  result["dB"] = by_patch(change.dB, shape);
+  result["dB_error"] = by_patch(change.dB_error, shape);
   result["B_before"] = by_patch(before.values.B, shape);
   result["B_after"] = by_patch(after.values.B, shape);
   result["reached"] = before.enclosure.form_factors.reached && after.enclosure.form_factors.reached;

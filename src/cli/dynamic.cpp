@@ -15,14 +15,14 @@
 #include "src/cli/console.h"
 #include "src/cli/interrupt.h"
 #include "src/cli/json_text.h"
+#include "src/cli/memory_limit.h"
 #include "src/cli/number_range.h"
+#include "src/cli/reference_store.h"
 #include "src/cli/verbs.h"
 #include "src/dynamic/converged_reference.h"
 #include "src/dynamic/edit_session.h"
+#include "src/dynamic/picture.h"
 #include "src/dynamic/trespass.h"
-#include "src/output/image.h"
-#include "src/output/mesh_faces.h"
-#include "src/output/process_memory.h"
 #include "src/output/result_folder.h"
 #include "src/output/vtk.h"
 #include "src/output/whole_file.h"
@@ -36,45 +36,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-/// Form factors of a reference by gathering may take this share of the memory that is there, at this density of rows.
-constexpr double kShareOfMemory = 0.4, kDensity = 0.5;
-constexpr double kBytesAnEntry = 20;
-/// References by shots converge to this.
-constexpr double kReferenceTolerance = 1e-4;
-
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-/// What each frame converges to: by gathering, or, where the matrix would not fit in memory, by a session of its own
-/// that works off everything.
-class References {
- public:
-  References(const DynamicScene& scene, SessionOptions options, const DynamicRadiosity& state) {
-    const double entries = static_cast<double>(state.version().elements()) *
-                           static_cast<double>(state.version().patches()) * kDensity;
-    if (2 * entries * kBytesAnEntry < kShareOfMemory * static_cast<double>(available_memory_bytes())) return;
-    options.method = UpdateMethod::redistribute;
-    options.tolerance = kReferenceTolerance;
-    session_.emplace(scene.scene, options);
-  }
-  const char* method() const { return session_ ? "shots" : "gathering"; }
-
-  void apply(const Edit& edit) {
-    if (session_) session_->apply(edit);
-  }
-  /// Of the present frame; none where `stop` came first.
-  std::optional<std::vector<double>> find(const DynamicRadiosity& state, const std::function<bool()>& stop) {
-    if (!session_) return converged_reference(state);
-    Budget all;
-    all.interrupted = stop;
-    if (session_->work(all).interrupted) return std::nullopt;
-    return session_->solution().element_B();
-  }
-
- private:
-  std::optional<EditSession> session_;
-};
 
 class Dynamic {
  public:
@@ -104,8 +68,12 @@ class Dynamic {
         ->check(whole_number_between(0));
     verb.add_option("--budget-ms", budget_ms_, "Milliseconds a frame after the first; 0: none")->check(number_between(0));
     verb.add_option("--replay", replay_, "frames.json of an earlier run whose numbers of shots to repeat");
+    verb.add_flag("!--no-log", options_.log, "Forget what an edit interrupts: it is never redistributed");
     verb.add_flag("--work-off", work_off_, "After the last event one more frame that works off all that was left");
     verb.add_flag("!--no-reference", reference_, "Leave out the converged references, and with them the errors");
+    verb.add_option("--references", reference_file_,
+                    "File (.h5) that keeps the converged references, for other runs of the same frames");
+    memory_limit_.add_to(verb);
     verb.add_flag("!--no-images", images_, "Leave out pictures and VTP files");
     patch_size_ = verb.add_option("--patch-size", options_.mesh.patch_size, "Longest edge of a patch [m]")
                       ->check(number_between(0));
@@ -139,9 +107,10 @@ class Dynamic {
     draft_ = folder.draft();
     set_options(given.scene);
 
+    store_.emplace(reference_file_);
     EditSession session(given.scene, options_);
-    std::optional<References> references;
-    if (reference_) references.emplace(given, options_, session.solution());
+    std::optional<FrameReferences> references;
+    if (reference_) references.emplace(given.scene, options_, session.solution(), memory_limit_.bytes());
     frame(given, session, references, given.events.empty() ? 0 : std::min(0.0, given.events.front().time), {});
     std::size_t next = 0;
     while (next < given.events.size() && !stop()) {
@@ -155,6 +124,7 @@ class Dynamic {
     if (work_off_ && !stop()) frame(given, session, references, last, {"work off"});
     write_whole_file(draft_ / "frames.json", [&](std::ostream& out) { out << frames_.dump(1) << '\n'; });
     folder.publish();
+    store_->save();
     print_results(json_ ? frames_.dump(1) + '\n' : summary_);
     if (partial_) {
       print_message(fmt::format("stopped in frame {}; the partial result was saved", frames_.size() - 1));
@@ -181,7 +151,7 @@ class Dynamic {
       options_.mesh.elements_per_edge = scene.mesh.elements_per_edge;
       options_.mesh.small_patch = scene.mesh.small_patch;
     }
-    options_.mesh.memory_limit = available_memory_bytes();
+    options_.mesh.memory_limit = memory_limit_.bytes();
   }
 
   void read_replay() {
@@ -195,11 +165,10 @@ class Dynamic {
     }
   }
 
-  std::string apply(const Event& event, EditSession& session, std::optional<References>& references) const {
+  std::string apply(const Event& event, EditSession& session, std::optional<FrameReferences>& references) {
     session.apply(event.edit);
     if (references) references->apply(event.edit);
-    for (const std::string& warning : find_trespass(session.scene(), session.solution().version(), event.edit.object))
-      print_warning(fmt::format("{}:{}: {}", path_, event.line, warning));
+    moved_[event.edit.object] = event.line;
     return fmt::format("{} {}", name_of(event.edit.operation), session.scene().scene().objects[event.edit.object].name);
   }
 
@@ -214,15 +183,20 @@ class Dynamic {
     return budget;
   }
 
-  void frame(const DynamicScene& given, EditSession& session, std::optional<References>& references, double time,
+  void frame(const DynamicScene& given, EditSession& session, std::optional<FrameReferences>& references, double time,
              const std::vector<std::string>& edits) {
     last_ = !edits.empty() && edits.front() == "work off";
     const SessionWork work = session.work(budget());
     const DynamicRadiosity& state = session.solution();
+    // Only now is an object that is selected where it is shown.
+    for (const auto& [object, line] : std::exchange(moved_, {})) {
+      for (const std::string& warning : find_trespass(session.scene(), state.version(), object))
+        print_warning(fmt::format("{}:{}: {}", path_, line, warning));
+    }
     const std::vector<double> B = state.element_B();
     std::optional<ConvergenceError> error;
     if (references && !partial_) {
-      if (const auto reference = references->find(state, [this] { return stop(); })) {
+      if (const auto reference = store_->find(session, *references, [this] { return stop(); })) {
         // Of the first frame nothing came before: what changed most is what is brightest.
         error = convergence_error(state.version(), state.bands(), *reference, reference_before_, B);
         reference_before_ = *reference;
@@ -240,10 +214,11 @@ class Dynamic {
     frame["visibility_tests"] = work.propagation.visibility_tests + work.redistribution.visibility_tests;
     frame["redistribution_tests"] = work.redistribution.visibility_tests;
     frame["redistribution_tests_idle"] = work.redistribution.idle_tests;
+    frame["redistribution_tests_idle_patches"] = work.redistribution.idle_patch_tests;
     frame["elements_kept_in_umbra"] = work.redistribution.kept;
     frame["error"] = error ? Json(error->all) : Json(nullptr);
     frame["error_worst_1_percent"] = error ? Json(error->worst_1_percent) : Json(nullptr);
-    frame["reference"] = error ? Json(references->method()) : Json(nullptr);
+    frame["reference"] = error ? Json(references->gathers() ? "gathering" : "shots") : Json(nullptr);
     frame["error_bound"] = state.pending_changes() == 0 ? Json(state.error_bound()) : Json(nullptr);
     frame["finished"] = work.finished;
     frame["propagation_left"] = session.propagation_left();
@@ -271,29 +246,24 @@ class Dynamic {
   }
 
   void draw(const DynamicScene& given, const EditSession& session, double time, const std::vector<double>& B) const {
-    const SceneVersion& version = session.solution().version();
-    const Faces faces = faces_of(version.mesh(), version.soup());
-    const Discretisation d = session.solution().discretisation();
-    std::vector<std::uint8_t> emits(version.elements());
-    for (std::uint32_t e = 0; e < emits.size(); ++e) {
-      for (std::uint32_t b = 0; b < d.bands; ++b)
-        emits[e] = emits[e] != 0 || d.E[std::size_t{version.mesh().elements[e].patch} * d.bands + b] > 0;
-    }
+    const DynamicRadiosity& state = session.solution();
+    const Faces faces = faces_of(state.version());
     const Camera camera = !given.camera_path.empty() ? camera_at(given.camera_path, time)
                           : given.scene.camera       ? *given.scene.camera
                                                      : default_camera(faces.points(), is_closed(given.scene));
     const std::string name = fmt::format("frame_{:03}", frames_.size());
-    write_png(draft_ / (name + ".png"), render(faces, {d.bands, B, emits, {}}, camera));
+    write_png(draft_ / (name + ".png"), picture(state, B, camera));
     VtkArray exitance{"B", given.scene.unit, {}, B};
-    if (d.bands == 3) exitance.components = {"R", "G", "B"};
-    for (std::uint32_t b = 0; d.bands != 1 && d.bands != 3 && b < d.bands; ++b)
+    if (state.bands() == 3) exitance.components = {"R", "G", "B"};
+    for (std::uint32_t b = 0; state.bands() != 1 && state.bands() != 3 && b < state.bands(); ++b)
       exitance.components.push_back(fmt::format("band {}", b));
     write_vtp(draft_ / (name + ".vtp"), faces, {&exitance, 1});
   }
 
   SessionOptions options_;
   CLI::Option *patch_size_ = nullptr, *elements_ = nullptr;
-  std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", replay_, folder_;
+  std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", replay_, reference_file_, folder_;
+  MemoryLimit memory_limit_;
   std::optional<std::uint64_t> budget_shots_;
   std::optional<double> budget_ms_, time_limit_;
   std::optional<std::size_t> threads_;
@@ -301,6 +271,8 @@ class Dynamic {
 
   Clock::time_point start_;
   std::filesystem::path draft_;
+  std::optional<ReferenceStore> store_;
+  std::map<std::uint32_t, std::uint32_t> moved_;  // objects of this frame's edits, and the lines of the last of these
   std::vector<std::uint64_t> replayed_;
   std::vector<double> reference_before_;
   Json frames_ = Json::array();

@@ -4,25 +4,50 @@
 #include <cmath>
 #include <numeric>
 
-#include "src/form_factor/point_rows.h"
-#include "src/form_factor/row_blocks.h"
+#include "src/form_factor/form_factor_matrix.h"
 #include "src/solve/gather.h"
 
 namespace exitance {
+namespace {
+
+/// Entries of a column that are not 0, and bytes an entry takes as part of a column and of the matrix.
+constexpr double kDensity = 0.5, kBytesAnEntry = 32;
+
+/// Rows of form factors, by element.
+FormFactorMatrix matrix_of(const std::shared_ptr<const SceneVersion>& version) {
+  const auto patches = static_cast<std::uint32_t>(version->patches());
+  std::vector<FormFactorColumn> columns(patches);
+  FormFactorMatrix rows;
+  rows.columns = patches;
+  rows.row_first.assign(version->elements() + 1, 0);
+  std::uint64_t tests = 0;
+  for (std::uint32_t p = 0; p < patches; ++p) {
+    if (version->object_of_patch(p) == SceneVersion::kVoid) continue;
+    columns[p] = make_column(version, p, tests);
+    for (const std::uint32_t e : columns[p].element) ++rows.row_first[e + 1];
+  }
+  std::partial_sum(rows.row_first.begin(), rows.row_first.end(), rows.row_first.begin());
+  rows.column.resize(rows.row_first.back());
+  rows.F.resize(rows.row_first.back());
+  rows.F_error.assign(rows.row_first.back(), kPointTolerance);
+  std::vector<std::uint64_t> next(rows.row_first.begin(), rows.row_first.end() - 1);
+  for (std::uint32_t p = 0; p < patches; ++p) {
+    for (std::size_t k = 0; k < columns[p].element.size(); ++k) {
+      const std::uint64_t place = next[columns[p].element[k]]++;
+      rows.column[place] = p;
+      rows.F[place] = columns[p].F[k];
+    }
+    columns[p] = {};
+  }
+  return rows;
+}
+
+}  // namespace
 
 std::vector<double> converged_reference(const DynamicRadiosity& state) {
   const SceneVersion& version = state.version();
-  FormFactorMatrix rows;
-  rows.columns = static_cast<std::uint32_t>(version.patches());
-  constexpr std::size_t kBlock = 1024;
+  const FormFactorMatrix rows = matrix_of(state.shared_version());
   const auto n = static_cast<std::uint32_t>(version.elements());
-  for_each_row(
-      n, kBlock,
-      [&](std::size_t k) {
-        const auto e = static_cast<std::uint32_t>(k);
-        return version.has_element(e) ? version.row(e) : PointRow{};
-      },
-      [&](const PointRow& row) { append(rows, row); }, [](std::size_t) {});
   const Discretisation d = state.discretisation();
   const Solution solution = gather(make_system(d, rows), {.tolerance = 1e-13});
   std::vector<double> B = element_exitance(d, irradiance(rows, solution.B, d.bands));
@@ -30,6 +55,30 @@ std::vector<double> converged_reference(const DynamicRadiosity& state) {
     if (!version.has_element(e)) std::fill_n(B.begin() + static_cast<std::ptrdiff_t>(std::size_t{e} * d.bands), d.bands, 0.0);
   }
   return B;
+}
+
+FrameReferences::FrameReferences(const Scene& scene, const SessionOptions& options, const DynamicRadiosity& state,
+                                 std::uint64_t memory, double tolerance) {
+  const double entries =
+      static_cast<double>(state.version().elements()) * static_cast<double>(state.version().patches()) * kDensity;
+  if (entries * kBytesAnEntry < static_cast<double>(memory)) return;
+  SessionOptions own = options;
+  own.method = UpdateMethod::redistribute;
+  own.tolerance = tolerance;
+  session_.emplace(scene, own);
+}
+
+void FrameReferences::apply(const Edit& edit) {
+  if (session_) session_->apply(edit);
+}
+
+std::optional<std::vector<double>> FrameReferences::find(const DynamicRadiosity& state,
+                                                         const std::function<bool()>& stop) {
+  if (!session_) return converged_reference(state);
+  Budget all;
+  all.interrupted = stop;
+  if (session_->work(all).interrupted) return std::nullopt;
+  return session_->solution().element_B();
 }
 
 ConvergenceError convergence_error(const SceneVersion& version, std::uint32_t bands,

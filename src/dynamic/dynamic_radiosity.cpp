@@ -9,10 +9,17 @@
 #include "src/dynamic/importance.h"
 
 namespace exitance {
+namespace {
 
-DynamicRadiosity::DynamicRadiosity(std::shared_ptr<const SceneVersion> version, const Scene& scene)
-    : bands_(scene.bands), weights_(luminance_weights(scene.bands)) {
-  layers_.push_back({std::move(version), {}, {}, {}, {}});
+/// Columns of older versions are given up.
+constexpr std::size_t kVersionsOfColumns = 8;
+
+}  // namespace
+
+DynamicRadiosity::DynamicRadiosity(std::shared_ptr<const SceneVersion> version, const Scene& scene,
+                                   std::uint64_t column_memory)
+    : bands_(scene.bands), weights_(luminance_weights(scene.bands)), columns_(column_memory) {
+  layers_.push_back({std::move(version), {}, {}, {}});
   fit_arrays();
   for (std::uint32_t object = 0; object < this->version().objects(); ++object) set_materials(scene, object);
 }
@@ -116,13 +123,12 @@ void DynamicRadiosity::change_geometry(std::shared_ptr<const SceneVersion> next,
   std::fill_n(H_.begin() + static_cast<std::ptrdiff_t>(std::size_t{was.element_first} * bands_),
               std::size_t{was.element_count} * bands_, CompensatedSum{});
   layers_.back().name = name;
-  layers_.push_back({std::move(next), {}, {}, {}, {}});
+  layers_.push_back({std::move(next), {}, {}, {}});
   fit_arrays();
   drop_empty_layers();
-  for (std::size_t k = 0; k + 1 < layers_.size(); ++k) {
-    layers_[k].to_present = std::make_shared<const VersionDifference>(layers_[k].version, layers_.back().version);
-    layers_[k].importance.reset();
-  }
+  for (Layer& layer : layers_) layer.importance.reset();
+  differences_.clear();
+  columns_.keep_versions(kVersionsOfColumns);
   for (std::uint32_t p = was.patch_first; p < was.patch_first + was.patch_count; ++p) {
     for (std::uint32_t b = 0; b < bands_; ++b) E_[std::size_t{p} * bands_ + b] = rho_[std::size_t{p} * bands_ + b] = 0;
     refresh(p);
@@ -130,43 +136,72 @@ void DynamicRadiosity::change_geometry(std::shared_ptr<const SceneVersion> next,
   set_materials(scene, object);
 }
 
+void DynamicRadiosity::forget_changes() {
+  for (std::size_t k = 0; k + 1 < layers_.size(); ++k) {
+    for (std::uint32_t p = 0; p < version().patches(); ++p) {
+      const std::uint32_t object = version().object_of_patch(p);
+      if (object == SceneVersion::kVoid || !version().same_in(*layers_[k].version, object)) continue;
+      for (std::size_t i = std::size_t{p} * bands_; i < (std::size_t{p} + 1) * bands_; ++i) {
+        layers_.back().shot[i].add(layers_[k].shot[i].high());
+        layers_.back().shot[i].add(layers_[k].shot[i].low());
+      }
+    }
+  }
+  layers_.erase(layers_.begin(), layers_.end() - 1);
+}
+
 void DynamicRadiosity::change_materials(const Scene& scene, std::uint32_t object) {
   set_materials(scene, object);
 }
 
 void DynamicRadiosity::start_over() {
+  columns_.clear();
+  differences_.clear();
   layers_.erase(layers_.begin(), layers_.end() - 1);
   std::ranges::fill(layers_.back().shot, CompensatedSum{});
   std::ranges::fill(H_, CompensatedSum{});
   for (std::uint32_t p = 0; p < version().patches(); ++p) refresh(p);
 }
 
+/// What has changed between an older version and the present one.
+const VersionDifference& DynamicRadiosity::since(const std::shared_ptr<const SceneVersion>& version) {
+  for (const auto& difference : differences_) {
+    if (&difference->before() == version.get()) return *difference;
+  }
+  differences_.push_back(std::make_shared<const VersionDifference>(version, shared_version()));
+  return *differences_.back();
+}
+
+std::shared_ptr<const FormFactorColumn> DynamicRadiosity::present_column(std::uint32_t patch, ChangeWork& work) {
+  std::shared_ptr<const FormFactorColumn> column = columns_.find(patch);
+  if (column && column->version == shared_version()) return column;
+  if (column && since(column->version).keeps(patch)) {
+    const VersionDifference& difference = since(column->version);
+    const auto changes = difference.column(patch, VersionDifference::Search::shadow_volumes, column.get(), work);
+    column = std::make_shared<const FormFactorColumn>(changed_column(*column, difference, changes));
+  } else {
+    column = std::make_shared<const FormFactorColumn>(make_column(shared_version(), patch, work.visibility_tests));
+  }
+  columns_.put(patch, column);
+  return column;
+}
+
 DynamicShot DynamicRadiosity::propagate(std::uint32_t patch) {
   DynamicShot shot{DynamicShot::Kind::propagation, patch, 0, {}};
   const std::vector<double> amount(unshot_.begin() + static_cast<std::ptrdiff_t>(std::size_t{patch} * bands_),
                                    unshot_.begin() + static_cast<std::ptrdiff_t>((std::size_t{patch} + 1) * bands_));
-  const auto n = static_cast<std::uint32_t>(version().elements());
-  std::vector<double> F(n);
-  std::vector<std::uint8_t> asked(n);
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, n, 128), [&](const auto& some) {
-    for (std::uint32_t e = some.begin(); e < some.end(); ++e) {
-      if (!version().has_element(e) || version().faces_away(e, patch)) continue;
-      asked[e] = 1;
-      F[e] = version().form_factor(e, patch).F;
-      if (F[e] != 0) receive(e, F[e], amount.data());
-    }
+  const auto column = present_column(patch, shot.work);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, column->element.size(), 1024), [&](const auto& some) {
+    for (std::size_t k = some.begin(); k < some.end(); ++k) receive(column->element[k], column->F[k], amount.data());
   });
-  std::vector<std::uint32_t> lit;
-  for (std::uint32_t e = 0; e < n; ++e) {
-    shot.work.visibility_tests += asked[e];
-    if (F[e] == 0) continue;
-    lit.push_back(e);
-    const std::size_t p = std::size_t{version().mesh().elements[e].patch} * bands_;
+  for (std::size_t k = 0; k < column->element.size(); ++k) {
+    const Element& e = version().mesh().elements[column->element[k]];
+    const std::size_t p = std::size_t{e.patch} * bands_;
     for (std::uint32_t b = 0; b < bands_; ++b)
-      shot.power += weights_[b] * version().mesh().elements[e].area * rho_[p + b] * F[e] * std::fabs(amount[b]);
+      shot.power += weights_[b] * e.area * rho_[p + b] * column->F[k] * std::fabs(amount[b]);
   }
   for (std::uint32_t b = 0; b < bands_; ++b) layers_.back().shot[std::size_t{patch} * bands_ + b].add(amount[b]);
-  refresh_patches_of(lit);
+  refresh_patches_of(column->element);
   refresh(patch);
   return shot;
 }
@@ -174,8 +209,12 @@ DynamicShot DynamicRadiosity::propagate(std::uint32_t patch) {
 DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t patch, VersionDifference::Search search) {
   DynamicShot shot{DynamicShot::Kind::redistribution, patch, 0, {}};
   Layer& layer = layers_[change];
-  const VersionDifference& difference = *layer.to_present;
-  const std::vector<FormFactorChange> changes = difference.column(patch, search, shot.work);
+  const VersionDifference& difference = since(layer.version);
+  auto known = columns_.find(patch);
+  if (known && known->version != layer.version) known.reset();
+  const std::vector<FormFactorChange> changes = difference.column(patch, search, known.get(), shot.work);
+  if (known && difference.keeps(patch))
+    columns_.put(patch, std::make_shared<const FormFactorColumn>(changed_column(*known, difference, changes)));
   CompensatedSum* const past = layer.shot.data() + std::size_t{patch} * bands_;
   std::vector<double> high(bands_), low(bands_);
   for (std::uint32_t b = 0; b < bands_; ++b) {
@@ -207,6 +246,11 @@ DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t pat
   refresh(patch);
   drop_empty_layers();
   return shot;
+}
+
+void DynamicRadiosity::set_importance(const ImportanceOptions& options) {
+  importance_ = options;
+  for (Layer& layer : layers_) layer.importance.reset();
 }
 
 double DynamicRadiosity::redistribution_energy(std::size_t change, std::uint32_t patch) const {
@@ -279,7 +323,7 @@ DynamicRadiosity::StrongestChange DynamicRadiosity::strongest_change() {
   for (std::size_t k = 0; k + 1 < layers_.size(); ++k) {
     Layer& layer = layers_[k];
     if (!layer.importance) {
-      layer.importance = std::make_shared<const std::vector<double>>(importance_of(*layer.to_present));
+      layer.importance = std::make_shared<const std::vector<double>>(importance_of(since(layer.version)));
     }
     for (std::uint32_t p = 0; p < version().patches(); ++p) {
       if (!has_to_redistribute(k, p)) continue;

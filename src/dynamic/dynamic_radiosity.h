@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "src/dynamic/form_factor_column.h"
 #include "src/dynamic/version_difference.h"
 #include "src/scene/edit.h"
 #include "src/solve/compensated.h"
@@ -59,11 +60,16 @@ struct PendingChange {
 /// elements begin anew. Where the paper's text shoots ρ_j F_ij^Δt B_j, eq. 5 needs ρ_i; where Figure 2 multiplies F^Δt,
 /// which is negative in a shadow, by −1, it means its magnitude.
 ///
+/// A propagation shot takes the patch's column of form factors as it was kept, brought to the present version by what has
+/// changed of it since, or computes it.
+///
 /// Copies are independent and share versions. Any number of threads gives the same bits.
 class DynamicRadiosity {
  public:
-  /// Nothing has been shot.
-  DynamicRadiosity(std::shared_ptr<const SceneVersion> version, const Scene& scene);
+  /// Nothing has been shot. column_memory: bytes that form factors kept for later shots may take.
+  DynamicRadiosity(std::shared_ptr<const SceneVersion> version, const Scene& scene,
+                   std::uint64_t column_memory = kColumnMemory);
+  static constexpr std::uint64_t kColumnMemory = std::uint64_t{2} << 30;
 
   const SceneVersion& version() const { return *layers_.back().version; }
   std::shared_ptr<const SceneVersion> shared_version() const { return layers_.back().version; }
@@ -76,8 +82,12 @@ class DynamicRadiosity {
   /// Reflectances and emissions of an object are now those of the scene: a correction of the radiosity of its patches,
   /// which is propagated; nothing is redistributed.
   void change_materials(const Scene& scene, std::uint32_t object);
-  /// Forgets all that was shot.
+  /// Forgets all that was shot, and all form factors.
   void start_over();
+
+  /// What was shot in older versions counts as shot in the present one, and what changed objects shot as gone with them:
+  /// nothing is pending any more, and what was not redistributed stays wrong (the paper's solution without a log).
+  void forget_changes();
 
   /// Shoots all of a patch's unshot radiosity.
   DynamicShot propagate(std::uint32_t patch);
@@ -90,7 +100,7 @@ class DynamicRadiosity {
 
   /// Of a pending change, by patch: [m²] power that reaches what changed, of the unit exitance that the patch has shot;
   /// the patch's own area where it is to take back all. Computed when first asked for.
-  void set_importance(const ImportanceOptions& options) { importance_ = options; }
+  void set_importance(const ImportanceOptions& options);
   /// What decides the order: the luminance of what a patch has shot times its importance [W or lm].
   double redistribution_energy(std::size_t change, std::uint32_t patch) const;
   bool has_shot(std::uint32_t patch) const;  ///< by the present version
@@ -129,12 +139,12 @@ class DynamicRadiosity {
     std::shared_ptr<const SceneVersion> version;
     std::string name;                 ///< of the change that ended it
     std::vector<CompensatedSum> shot;  ///< by patch and band
-    // Of all but the present one:
-    std::shared_ptr<const VersionDifference> to_present;
-    std::shared_ptr<const std::vector<double>> importance;  ///< by patch
+    std::shared_ptr<const std::vector<double>> importance;  ///< by patch; of all but the present one
   };
 
   void fit_arrays();
+  const VersionDifference& since(const std::shared_ptr<const SceneVersion>& version);
+  std::shared_ptr<const FormFactorColumn> present_column(std::uint32_t patch, ChangeWork& work);
   void set_materials(const Scene& scene, std::uint32_t object);
   void refresh(std::uint32_t patch);
   void receive(std::uint32_t element, double F, const double* amount);
@@ -151,6 +161,8 @@ class DynamicRadiosity {
   std::vector<double> rho_, E_;     // by patch and band
   std::vector<double> B_, unshot_;  // by patch and band
   ImportanceOptions importance_;
+  ColumnStore columns_;
+  std::vector<std::shared_ptr<const VersionDifference>> differences_;  // to the present version, where asked for
 };
 
 }  // namespace exitance

@@ -24,13 +24,21 @@ void count(const DynamicShot& shot, SessionWork& work) {
 }  // namespace
 
 EditSession::EditSession(Scene scene, const SessionOptions& options)
-    : options_(options),
-      scene_(std::move(scene)),
-      base_(std::make_shared<SceneVersion>(scene_, options.mesh), scene_.scene()) {
+    : scene_(std::move(scene)), base_(std::make_shared<SceneVersion>(scene_, options.mesh), scene_.scene()) {
+  set_options(options);
+}
+
+EditSession::EditSession(const EditSession& other, const SessionOptions& options) : EditSession(other) {
+  set_options(options);
+}
+
+void EditSession::set_options(const SessionOptions& options) {
+  options_ = options;
   if (!(options_.tolerance > 0)) throw std::invalid_argument("a session's tolerance must be positive");
   if (!(options_.threshold >= 0)) throw std::invalid_argument("a session's threshold must not be negative");
   if (options_.method == UpdateMethod::restart) options_.importance.kind = ImportanceOptions::Kind::total;
   base_.set_importance(options_.importance);
+  if (shown_) shown_->set_importance(options_.importance);
 }
 
 std::string EditSession::name_of_edit(const Edit& edit) const {
@@ -38,6 +46,7 @@ std::string EditSession::name_of_edit(const Edit& edit) const {
 }
 
 void EditSession::change_geometry(DynamicRadiosity& of, std::uint32_t object, const std::string& name) {
+  if (!options_.log) of.forget_changes();
   of.change_geometry(std::make_shared<SceneVersion>(of.version(), scene_, options_.mesh, object), scene_.scene(),
                      object, name);
 }
@@ -143,6 +152,14 @@ std::vector<PendingChange> EditSession::log() const {
   std::vector<PendingChange> log;
   for (std::size_t k = 0; k < solution().pending_changes(); ++k) log.push_back(solution().pending(k));
   return log;
+}
+
+std::vector<double> EditSession::temporary_change() const {
+  if (!shown_) return {};
+  std::vector<double> change = shown_->element_B();
+  const std::vector<double> without = base_.element_B();
+  for (std::size_t i = 0; i < without.size(); ++i) change[i] -= without[i];
+  return change;
 }
 
 double EditSession::redistribution_left() {

@@ -33,6 +33,8 @@ struct SessionOptions {
   /// power, as it is ranked. 0: until nothing is left to redistribute.
   double threshold = 1e-4;
   ImportanceOptions importance;
+  /// Without it what is interrupted by an edit is never redistributed.
+  bool log = true;
   double tolerance = 1e-6;  ///< of ‖B − B*‖∞ / max B, worst band: then there is nothing left to do; > 0
 };
 
@@ -57,6 +59,9 @@ class EditSession {
  public:
   EditSession(Scene scene, const SessionOptions& options);
 
+  /// Goes on from where another session is, with other options; of the mesh they must be the same.
+  EditSession(const EditSession& other, const SessionOptions& options);
+
   /// The solution as it is to be shown.
   const DynamicRadiosity& solution() const { return shown_ ? *shown_ : base_; }
   const EditedScene& scene() const { return scene_; }
@@ -74,6 +79,10 @@ class EditSession {
   /// temporary place.
   SessionWork work(const Budget& budget);
 
+  /// The separate buffer of a selected object: by element and band, what it adds to the solution without it. Empty when
+  /// none is shown.
+  std::vector<double> temporary_change() const;
+
   /// Changes that are not worked off, the oldest first: what was interrupted stays here until time is found for it.
   std::vector<PendingChange> log() const;
   /// [W or lm] largest energy left to redistribute, as ranked; to propagate.
@@ -84,6 +93,7 @@ class EditSession {
   void change_geometry(DynamicRadiosity& of, std::uint32_t object, const std::string& name);
   bool step(DynamicRadiosity& of, SessionWork& work);
   void open_temporary();
+  void set_options(const SessionOptions& options);
   std::string name_of_edit(const Edit& edit) const;
 
   SessionOptions options_;

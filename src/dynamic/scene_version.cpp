@@ -10,7 +10,8 @@ SceneVersion::SceneVersion(const EditedScene& scene, const MeshOptions& options)
       mesh_(make_patch_mesh(scene.scene(), soup_, options)),
       visibility_(mesh_, soup_),
       slots_(scene.scene().objects.size()),
-      observers_([this] { return visibility_.observer(); }) {
+      observers_([this] { return visibility_.observer(); }),
+      sights_([this] { return std::make_unique<PatchSight>(mesh_, soup_, visibility_.contacts()); }) {
   std::uint32_t patch = 0;
   for (std::uint32_t object = 0; object < slots_.size(); ++object) {
     ObjectSlot& slot = slots_[object];
@@ -32,10 +33,12 @@ SceneVersion::SceneVersion(const EditedScene& scene, const MeshOptions& options)
 
 SceneVersion::SceneVersion(const SceneVersion& before, const EditedScene& scene, const MeshOptions& options,
                            std::uint32_t object)
-    : soup_(make_soup(scene.scene())),
+    : serial_(before.serial_ + 1),
+      soup_(make_soup(scene.scene())),
       visibility_(mesh_, soup_),
       slots_(before.slots_),
-      observers_([this] { return visibility_.observer(); }) {
+      observers_([this] { return visibility_.observer(); }),
+      sights_([this] { return std::make_unique<PatchSight>(mesh_, soup_, visibility_.contacts()); }) {
   find_facets(scene);
   slots_[object].present = scene.is_present(object);
   ++slots_[object].pose;
@@ -161,24 +164,6 @@ void SceneVersion::find_elements(std::span<const HalfSpace> region, std::vector<
   }
 }
 
-bool SceneVersion::faces_away(std::uint32_t element, std::uint32_t patch) const {
-  // Rounded values that are beyond this share of the sizes in question are surely of the right sign.
-  constexpr double kSure = 1e-9;
-  const Element& e = mesh_.elements[element];
-  const double reach = kSure * soup_.extent();
-  bool behind = true, below = true;
-  for (const PatchPiece& piece : mesh_.pieces_of(mesh_.patches[patch])) {
-    const Facet& facet = soup_.facets()[piece.facet];
-    const Plane& plane = facet.plane;
-    behind = behind && dot(plane.normal, e.sample - plane.origin) < -reach * norm(plane.normal);
-    const auto is_below = [&](const Vec3& v) { return dot(e.normal, v - e.sample) < -reach; };
-    below = below && (piece.loop_count > 0 ? std::ranges::all_of(mesh_.loop(piece), is_below)
-                                           : std::ranges::all_of(soup_.corners(facet), is_below, &Corner::at));
-    if (!behind && !below) return false;
-  }
-  return true;
-}
-
 std::size_t SceneVersion::present_patches() const {
   std::size_t count = 0;
   for (const ObjectSlot& slot : slots_) count += slot.present ? slot.patch_count : 0;
@@ -198,10 +183,6 @@ std::vector<std::uint32_t> SceneVersion::changed_since(const SceneVersion& other
     if (!absent && !same_in(other, object)) changed.push_back(object);
   }
   return changed;
-}
-
-PointFormFactor SceneVersion::form_factor(std::uint32_t element, std::uint32_t patch) const {
-  return observers_.local()->entry(element, patch);
 }
 
 PointRow SceneVersion::row(std::uint32_t element) const {

@@ -10,6 +10,7 @@
 
 #include "geometry/polygon_soup.h"
 #include "geometry/shadow_volume.h"
+#include "src/dynamic/patch_sight.h"
 #include "src/scene/edit.h"
 #include "src/scene/patch_mesh.h"
 #include "src/visibility/exact_visibility.h"
@@ -42,6 +43,8 @@ class SceneVersion {
   SceneVersion(const SceneVersion&) = delete;
   SceneVersion& operator=(const SceneVersion&) = delete;
 
+  /// Counts versions that are made from one another, from 0.
+  std::uint64_t serial() const { return serial_; }
   const PolygonSoup& soup() const { return soup_; }
   const PatchMesh& mesh() const { return mesh_; }
   std::size_t patches() const { return mesh_.patches.size(); }
@@ -74,14 +77,10 @@ class SceneVersion {
   /// none that is void.
   void find_elements(std::span<const HalfSpace> region, std::vector<std::uint32_t>& found) const;
 
-  /// Surely no light goes from the patch to the element: it lies below the element's plane, or the element behind its.
-  bool faces_away(std::uint32_t element, std::uint32_t patch) const;
+  /// Of this thread, between patches of present objects.
+  PatchSight& sight() const { return *sights_.local(); }
 
-  /// Form factor from an element's sample point to a patch, exact (ExactVisibility). Any number of threads. REQUIRES:
-  /// the element is not void.
-  PointFormFactor form_factor(std::uint32_t element, std::uint32_t patch) const;
-
-  /// All of an element's form factors, likewise.
+  /// All form factors of an element that is not void, exact (ExactVisibility). Any number of threads.
   PointRow row(std::uint32_t element) const;
 
  private:
@@ -102,6 +101,7 @@ class SceneVersion {
     return then.present && slots_[object].present && then.pose == slots_[object].pose;
   }
 
+  std::uint64_t serial_ = 0;
   PolygonSoup soup_;
   PatchMesh mesh_;
   ExactVisibility visibility_;
@@ -109,6 +109,7 @@ class SceneVersion {
   std::vector<std::uint32_t> object_of_patch_;
   std::shared_ptr<const ElementIndex> element_index_;  ///< shared by versions that follow each other
   mutable tbb::enumerable_thread_specific<std::unique_ptr<Observer>> observers_;
+  mutable tbb::enumerable_thread_specific<std::unique_ptr<PatchSight>> sights_;
 };
 
 }  // namespace exitance

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "src/dynamic/form_factor_column.h"
+
 namespace exitance {
 namespace {
 
@@ -29,14 +31,15 @@ class PatchShade {
   }
 
   /// Outside: no object hides anything of any piece. Umbra: every piece is hidden as a whole by one of them.
-  Shade of(std::uint32_t element) {
+  /// So it is, too, where one of the screens, items of the index that stay as they are, hides what the object would.
+  Shade of(std::uint32_t element, std::span<const std::uint32_t> screens) {
     const Element& e = version_.mesh().elements[element];
     const Receiver receiver{e.sample, e.normal, e.facet};
     bool some = false, all = !casters_.empty();
     for (std::size_t k = 0; k < pieces_; ++k) {
       Shade most = Shade::outside;
       for (std::size_t c = 0; c < casters_.size() && most != Shade::umbra; ++c)
-        most = std::max(most, volumes_[k * casters_.size() + c]->at(receiver));
+        most = std::max(most, volumes_[k * casters_.size() + c]->at(receiver, screens));
       some = some || most != Shade::outside;
       all = all && most == Shade::umbra;
     }
@@ -58,18 +61,71 @@ class PatchShade {
   std::vector<std::unique_ptr<ShadowVolume>> volumes_;  ///< [piece][caster]
 };
 
+/// Whether something that stays as it is hides all of a patch from a sample point by itself.
+class Screens {
+ public:
+  explicit Screens(const SceneVersion& version) : version_(version), shaft_(version.soup()) {}
+
+  /// items: of the soup's index.
+  bool hide(std::uint32_t patch, std::uint32_t element, std::span<const std::uint32_t> items) {
+    const Element& e = version_.mesh().elements[element];
+    for (const PatchPiece& piece : version_.mesh().pieces_of(version_.mesh().patches[patch])) {
+      shaft_.reset({e.sample, e.normal, e.facet}, {piece.facet, version_.mesh().loop(piece)});
+      if (!shaft_.is_empty() && std::ranges::none_of(items, [&](std::uint32_t item) { return blocks(item); }))
+        return false;
+    }
+    return true;
+  }
+
+ private:
+  bool blocks(std::uint32_t item) {
+    const auto facets = static_cast<std::uint32_t>(version_.soup().facets().size());
+    return item < facets ? shaft_.blocks(item) : shaft_.blocks(version_.soup().shells()[item - facets]);
+  }
+
+  const SceneVersion& version_;
+  PointShaft shaft_;
+};
+
+double entry(const FormFactorColumn& column, std::uint32_t element) {
+  const auto at = std::ranges::lower_bound(column.element, element);
+  return at != column.element.end() && *at == element ? column.F[static_cast<std::size_t>(at - column.element.begin())]
+                                                      : 0.0;
+}
+
+/// Splits items into those of the objects and others.
+void split_items(const SceneVersion& version, std::span<const std::uint32_t> objects,
+                 std::span<const std::uint32_t> items, bool& some_of_objects, std::vector<std::uint32_t>& others) {
+  const PolygonSoup& soup = version.soup();
+  const auto facets = static_cast<std::uint32_t>(soup.facets().size());
+  some_of_objects = false;
+  others.clear();
+  for (const std::uint32_t item : items) {
+    const std::uint32_t facet = item < facets ? item : soup.shells()[item - facets].facets.front();
+    const bool of_object = std::ranges::any_of(objects, [&](std::uint32_t object) {
+      const ObjectSlot& slot = version.slot(object);
+      return slot.present && slot.facet_first <= facet && facet < slot.facet_last;
+    });
+    some_of_objects = some_of_objects || of_object;
+    if (!of_object) others.push_back(item);
+  }
+}
+
 }  // namespace
 
 struct VersionDifference::Scratch {
+  explicit Scratch(const VersionDifference& d)
+      : before(*d.before_, d.old_), after(*d.after_, d.new_), screens(*d.after_) {}
+
   PatchShade before, after;
+  Screens screens;
+  std::vector<std::uint32_t> stays_before, stays;  ///< items of either index that stand between and do not change
 };
 
 VersionDifference::VersionDifference(std::shared_ptr<const SceneVersion> before,
                                      std::shared_ptr<const SceneVersion> after)
     : before_(std::move(before)), after_(std::move(after)), objects_(after_->changed_since(*before_)),
-      scratch_([this] {
-        return std::make_unique<Scratch>(Scratch{PatchShade(*before_, old_), PatchShade(*after_, new_)});
-      }) {
+      scratch_([this] { return std::make_unique<Scratch>(*this); }) {
   const auto add = [](const SceneVersion& version, std::uint32_t object, auto& casters) {
     const ObjectSlot& slot = version.slot(object);
     if (slot.present)
@@ -107,51 +163,77 @@ void VersionDifference::find_candidates(std::uint32_t patch, std::vector<std::ui
   found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
-void VersionDifference::evaluate(std::uint32_t element, std::uint32_t patch, Search search, Scratch& scratch,
-                                 FormFactorChange& change, ChangeWork& work) const {
-  change.element = element;
-  const auto F = [&](const SceneVersion& version) {
-    if (version.faces_away(element, patch)) return 0.0;
-    ++work.visibility_tests;
-    const PointFormFactor f = version.form_factor(element, patch);
-    change.error += f.error;
-    return f.F;
+/// Elements of one patch, whose numbers stand in `changes`.
+void VersionDifference::compare(std::uint32_t receiver, std::uint32_t patch, Search search,
+                                const FormFactorColumn* known, Scratch& scratch, std::span<FormFactorChange> changes,
+                                ChangeWork& work) const {
+  const bool stays = after_->same_in(*before_, after_->object_of_patch(receiver)), kept = keeps(patch);
+  if (kept && stays && search == Search::shadow_volumes)
+    return compare_in_shadow(receiver, patch, known, scratch, changes, work);
+  const auto look = [&](const SceneVersion& version, double FormFactorChange::*F) {
+    PatchSight& sight = version.sight();
+    sight.set(receiver, patch);
+    if (!sight.sees()) return;
+    for (FormFactorChange& c : changes) {
+      const PointFormFactor f = sight.form_factor(c.element);
+      c.*F = f.F;
+      c.error += f.error;
+      ++c.tests;
+    }
   };
-  const bool stays = after_->same_in(*before_, after_->object_of_element(element));
-  if (!keeps(patch)) {
-    if (stays) change.before = F(*before_);
-  } else if (!stays) {
-    change.after = F(*after_);
-  } else if (search == Search::everywhere) {
-    change.before = F(*before_);
-    change.after = F(*after_);
-  } else {
-    if (after_->faces_away(element, patch)) return;
+  if (stays && known != nullptr) {
+    for (FormFactorChange& c : changes) c.before = entry(*known, c.element);
+  } else if (stays) {
+    look(*before_, &FormFactorChange::before);
+  }
+  if (kept) look(*after_, &FormFactorChange::after);
+}
+
+void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t patch, const FormFactorColumn* known,
+                                          Scratch& scratch, std::span<FormFactorChange> changes,
+                                          ChangeWork& work) const {
+  PatchSight &sight_before = before_->sight(), &sight_after = after_->sight();
+  bool was_between = false, is_between = false;
+  sight_before.set(receiver, patch);
+  split_items(*before_, objects_, sight_before.between(), was_between, scratch.stays_before);
+  sight_after.set(receiver, patch);
+  split_items(*after_, objects_, sight_after.between(), is_between, scratch.stays);
+  if (!was_between && !is_between) return;
+  if (!sight_before.sees() && !sight_after.sees()) return;
+  scratch.before.set_patch(patch);
+  scratch.after.set_patch(patch);
+  for (FormFactorChange& c : changes) {
     ++work.candidates;
-    scratch.before.set_patch(patch);
-    scratch.after.set_patch(patch);
-    const Shade was = scratch.before.of(element), is = scratch.after.of(element);
-    if (was == Shade::outside && is == Shade::outside) return;
+    const Shade was = was_between ? scratch.before.of(c.element, scratch.stays_before) : Shade::outside,
+                is = is_between ? scratch.after.of(c.element, scratch.stays) : Shade::outside;
+    if (was == Shade::outside && is == Shade::outside) continue;
     if (was == Shade::umbra && is == Shade::umbra) {
       ++work.kept;
-      return;
+      continue;
     }
+    if (scratch.screens.hide(patch, c.element, scratch.stays)) continue;
+    const auto F = [&](PatchSight& sight, Shade shade) {
+      if (shade == Shade::umbra || !sight.sees()) return 0.0;
+      ++c.tests;
+      const PointFormFactor f = sight.form_factor(c.element);
+      c.error += f.error;
+      return f.F;
+    };
+    const auto F_before = [&] { return known != nullptr ? entry(*known, c.element) : F(sight_before, was); };
     // Where no old shape hides anything new ones can only take: what is not seen before is not seen after; and the
     // other way round.
-    if (was == Shade::outside) {
-      change.before = F(*before_);
-      if (is != Shade::umbra && change.before > 0) change.after = F(*after_);
-    } else if (is == Shade::outside) {
-      change.after = F(*after_);
-      if (was != Shade::umbra && change.after > 0) change.before = F(*before_);
+    if (is == Shade::outside && known == nullptr) {
+      c.after = F(sight_after, is);
+      if (c.after > 0) c.before = F_before();
     } else {
-      if (was != Shade::umbra) change.before = F(*before_);
-      if (is != Shade::umbra) change.after = F(*after_);
+      c.before = F_before();
+      if (was != Shade::outside || c.before > 0) c.after = F(sight_after, is);
     }
   }
 }
 
-std::vector<FormFactorChange> VersionDifference::column(std::uint32_t patch, Search search, ChangeWork& work) const {
+std::vector<FormFactorChange> VersionDifference::column(std::uint32_t patch, Search search,
+                                                                const FormFactorColumn* known, ChangeWork& work) const {
   std::vector<std::uint32_t> elements;
   if (search == Search::everywhere || !keeps(patch)) {
     for (std::uint32_t e = 0; e < after_->elements(); ++e) {
@@ -161,18 +243,38 @@ std::vector<FormFactorChange> VersionDifference::column(std::uint32_t patch, Sea
     find_candidates(patch, elements);
   }
   std::vector<FormFactorChange> changes(elements.size());
-  std::vector<ChangeWork> works(elements.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, elements.size(), 16), [&](const auto& some) {
+  std::vector<std::size_t> first;  // of each patch's elements
+  const auto patch_of = [&](std::size_t k) { return after_->mesh().elements[elements[k]].patch; };
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    changes[k].element = elements[k];
+    if (k == 0 || patch_of(k) != patch_of(k - 1)) first.push_back(k);
+  }
+  const std::size_t patches = first.size();
+  first.push_back(elements.size());
+  std::vector<ChangeWork> works(patches);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches, 4), [&](const auto& some) {
     Scratch& scratch = *scratch_.local();
-    for (std::size_t k = some.begin(); k < some.end(); ++k)
-      evaluate(elements[k], patch, search, scratch, changes[k], works[k]);
+    for (std::size_t k = some.begin(); k < some.end(); ++k) {
+      compare(patch_of(first[k]), patch, search, known, scratch,
+              std::span(changes).subspan(first[k], first[k + 1] - first[k]), works[k]);
+    }
   });
-  for (std::size_t k = 0; k < works.size(); ++k) {
-    const FormFactorChange& c = changes[k];
-    // Equal but for rounding: what they differ by is less than they may be wrong by.
-    const bool equal = std::abs(c.after - c.before) <= c.error;
-    if (equal) works[k].idle_tests = works[k].visibility_tests;
-    work += works[k];
+  for (const ChangeWork& w : works) work += w;
+  for (std::size_t k = 0; k < patches; ++k) {
+    std::uint64_t tests = 0;
+    bool idle = true;
+    for (std::size_t i = first[k]; i < first[k + 1]; ++i) {
+      const FormFactorChange& c = changes[i];
+      tests += c.tests;
+      // Equal but for rounding: what they differ by is less than they may be wrong by, of which one alone may be known.
+      if (std::abs(c.after - c.before) <= 2 * c.error) {
+        work.idle_tests += c.tests;
+      } else {
+        idle = false;
+      }
+    }
+    work.visibility_tests += tests;
+    if (idle) work.idle_patch_tests += tests;
   }
   std::erase_if(changes, [](const FormFactorChange& c) { return c.before == c.after; });
   return changes;

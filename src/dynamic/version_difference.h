@@ -11,10 +11,13 @@
 
 namespace exitance {
 
+struct FormFactorColumn;  // form_factor_column.h
+
 struct FormFactorChange {
   std::uint32_t element = 0;
   double before = 0, after = 0;
-  double error = 0;  ///< bound of that of after − before
+  double error = 0;  ///< bound of that of after − before, of what was computed for it
+  std::uint32_t tests = 0;  ///< form factors that were computed for it
 };
 
 /// What the search for changed form factors took.
@@ -23,12 +26,14 @@ struct ChangeWork {
   std::uint64_t kept = 0;              ///< of those, in the umbra before and after: nothing to do
   std::uint64_t visibility_tests = 0;  ///< form factors that were computed
   std::uint64_t idle_tests = 0;        ///< of those, for elements whose form factor did not change
+  std::uint64_t idle_patch_tests = 0;  ///< of those, for patches none of whose elements' did
 
   ChangeWork& operator+=(const ChangeWork& other) {
     candidates += other.candidates;
     kept += other.kept;
     visibility_tests += other.visibility_tests;
     idle_tests += other.idle_tests;
+    idle_patch_tests += other.idle_patch_tests;
     return *this;
   }
 };
@@ -47,6 +52,7 @@ class VersionDifference {
 
   const SceneVersion& before() const { return *before_; }
   const SceneVersion& after() const { return *after_; }
+  const std::shared_ptr<const SceneVersion>& shared_after() const { return after_; }
   /// Objects whose geometry is not the same, ascending.
   const std::vector<std::uint32_t>& objects() const { return objects_; }
 
@@ -58,15 +64,19 @@ class VersionDifference {
   ///  - An element of a changed object was not there (or stood elsewhere): its F^{t−1} is 0.
   ///  - A patch of a changed object is no longer there: its F^t is 0, and all elements that see it are given.
   ///  - Else elements whose view of the patch meets a changed object as it was or as it is.
+  /// known: the patch's column in `before`, if there is one: F^{t−1} is not computed then.
   /// In parallel; any number of threads gives the same bits.
-  std::vector<FormFactorChange> column(std::uint32_t patch, Search search, ChangeWork& work) const;
+  std::vector<FormFactorChange> column(std::uint32_t patch, Search search, const FormFactorColumn* known,
+                                       ChangeWork& work) const;
 
  private:
   struct Scratch;
 
   void find_candidates(std::uint32_t patch, std::vector<std::uint32_t>& found) const;
-  void evaluate(std::uint32_t element, std::uint32_t patch, Search search, Scratch& scratch, FormFactorChange& change,
-                ChangeWork& work) const;
+  void compare(std::uint32_t receiver, std::uint32_t patch, Search search, const FormFactorColumn* known,
+               Scratch& scratch, std::span<FormFactorChange> changes, ChangeWork& work) const;
+  void compare_in_shadow(std::uint32_t receiver, std::uint32_t patch, const FormFactorColumn* known, Scratch& scratch,
+                         std::span<FormFactorChange> changes, ChangeWork& work) const;
 
   std::shared_ptr<const SceneVersion> before_, after_;
   std::vector<std::uint32_t> objects_;

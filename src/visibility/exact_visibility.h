@@ -18,6 +18,7 @@ class ExactVisibility final : public MeshVisibility {
 
   const PatchMesh& mesh() const override { return mesh_; }
   std::unique_ptr<Observer> observer() const override;
+  const Contacts& contacts() const { return contacts_; }
 
  private:
   const PatchMesh& mesh_;

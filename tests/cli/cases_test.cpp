@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -180,6 +181,74 @@ TEST_F(Cases, DynamicOfAPlateThatComesAndGoes) {
   for (int k = 0; k < 3; ++k) {
     EXPECT_NEAR(goes["dB"][k].get<double>(), -comes["dB"][k].get<double>(), 1e-12);
     EXPECT_NEAR(goes["B_after"][k].get<double>(), comes["B_before"][k].get<double>(), 1e-15);
+  }
+}
+
+/// A x = b by elimination with pivots.
+std::vector<long double> eliminate(std::vector<std::vector<long double>> A, std::vector<long double> b) {
+  const std::size_t n = b.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k; i < n; ++i) pivot = std::fabs(A[i][k]) > std::fabs(A[pivot][k]) ? i : pivot;
+    std::swap(A[k], A[pivot]);
+    std::swap(b[k], b[pivot]);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i == k) continue;
+      const long double factor = A[i][k] / A[k][k];
+      for (std::size_t j = k; j < n; ++j) A[i][j] -= factor * A[k][j];
+      b[i] -= factor * b[k];
+    }
+  }
+  for (std::size_t k = 0; k < n; ++k) b[k] /= A[k][k];
+  return b;
+}
+
+/// A plate comes, another goes, a floor becomes brighter and a ceiling darker: R and ΔB from the form factors of both
+/// enclosures by dense arithmetic.
+TEST_F(Cases, DynamicSolvesTheRedistributionEquation) {
+  const std::string other = R"({"polygon":[[0.2,0.3,0.25],[0.2,0.6,0.25],[0.7,0.6,0.5],[0.7,0.3,0.5]]})";
+  const std::vector<std::string> shapes = {kFloor, kCeiling, kPlate, other};
+  const std::vector<double> E = {2, 0, 0.5, 0.25}, rho = {0.5, 0.7, 0.3, 0.6}, E_after = {2.5, 0, 0.5, 0.25},
+                            rho_after = {0.5, 0.4, 0.3, 0.6};
+  const auto list = [&](bool after, bool enclosure) {
+    std::string patches;
+    for (std::size_t p = 0; p < 4; ++p) {
+      const bool absent = p == (after ? 3u : 2u);
+      const std::string values = R"("E":)" + std::to_string(after ? E_after[p] : E[p]) + R"(,"rho":)" +
+                                 std::to_string(after ? rho_after[p] : rho[p]);
+      patches += (p == 0 ? "" : ",") + with(shapes[p], (enclosure ? std::string(R"("kept":1)") : values) +
+                                                           (absent ? R"(,"absent":true)" : ""));
+    }
+    return R"({"patches":[)" + patches + "]";
+  };
+  const Json a =
+      answer(R"({"kind":"dynamic","before":)" + list(false, false) + R"(},"after":)" + list(true, false) + "}}");
+  ASSERT_EQ(a["status"], "ok") << a;
+  const auto F_of = [&](bool after) {
+    const Json f = answer(R"({"kind":"enclosure",)" + list(after, true).substr(1) + "}");
+    EXPECT_EQ(f["status"], "ok") << f;
+    return f["F"].get<std::vector<std::vector<double>>>();
+  };
+  const auto F = F_of(false), F_after = F_of(true);
+  const auto solved = [](const auto& F, const std::vector<double>& E, const std::vector<double>& rho,
+                         std::size_t absent) {
+    std::vector<std::vector<long double>> A(4, std::vector<long double>(4));
+    std::vector<long double> b(4);
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j < 4; ++j) A[i][j] = (i == j ? 1.0L : 0.0L) - rho[i] * F[i][j];
+      b[i] = i == absent ? 0 : E[i];
+    }
+    return eliminate(A, b);
+  };
+  const auto B = solved(F, E, rho, 2), B_after = solved(F_after, E_after, rho_after, 3);
+  for (std::size_t i = 0; i < 4; ++i) {
+    long double R = 0;
+    for (std::size_t j = 0; j < 4; ++j) R += (i == 3 ? 0 : rho_after[i]) * (F_after[i][j] - F[i][j]) * B[j];
+    if (i != 3) {
+      EXPECT_NEAR(a["R"][i].get<double>(), static_cast<double>(R), 1e-12) << i;
+    }
+    EXPECT_NEAR(a["dB"][i].get<double>(), static_cast<double>(B_after[i] - B[i]), 1e-12) << i;
+    EXPECT_LE(a["dB_error"][i].get<double>(), 1e-9);
   }
 }
 

@@ -47,12 +47,18 @@ TEST(Dynamic, BudgetsStopReplaysRepeatAndTheLogIsWorkedOff) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return json_in(scratch / name / "frames.json");
   };
-  const auto some = frames_of("--budget-shots 7 --work-off", "a");
+  const std::string kept = " --references " + (scratch / "kept.h5").string();
+  const auto some = frames_of("--budget-shots 7 --work-off" + kept, "a");
   EXPECT_EQ(some[1]["shots"], 7);
   EXPECT_FALSE(some[2]["log"].empty());
   EXPECT_GT(some[2]["error"], 1e-5);
   EXPECT_TRUE(some.back()["log"].empty());
   EXPECT_LT(some.back()["error"], 1e-5);
+  const auto with_kept = frames_of("--budget-shots 7 --work-off" + kept, "k");
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(with_kept[k]["error"], some[k]["error"]);
+  const auto forgot = frames_of("--budget-shots 7 --work-off --no-log" + kept, "f");
+  EXPECT_TRUE(forgot.back()["log"].empty());
+  EXPECT_GT(forgot.back()["error"], 1e-5) << "what was interrupted is lost";
   const auto none = frames_of("--budget-ms 0", "b");
   EXPECT_EQ(none[1]["shots"], 0);
   const auto again = frames_of("--replay " + (scratch / "a" / "frames.json").string(), "c");
@@ -80,6 +86,17 @@ TEST(Dynamic, BadInputAndLimits) {
   const Outcome wall = run("dynamic " + (scratch / "wall.toml").string() + kQuick + out);
   EXPECT_EQ(wall.code, 0) << "legal geometry";
   EXPECT_THAT(wall.err, HasSubstr("passes through 'room'"));
+  std::ofstream(scratch / "held.toml") << contents(data("cube.toml"))
+                                       << "[[event]]\ntime = 4\nobject = \"cube\"\noperation = \"add\"\n"
+                                          "[[event]]\ntime = 4\nobject = \"cube\"\noperation = \"select\"\n"
+                                          "[[event]]\ntime = 5\nobject = \"cube\"\noperation = \"move\"\n"
+                                          "translate = [9, 0, 0]\n";
+  const Outcome held = run("dynamic " + (scratch / "held.toml").string() + kQuick + out);
+  EXPECT_EQ(held.code, 0) << held.err;
+  EXPECT_THAT(held.err, HasSubstr("has left the scene")) << "a selected object, too";
+  std::ofstream(scratch / "no.h5") << "no archive";
+  EXPECT_EQ(run("dynamic " + data("cube.toml") + kQuick + " --references " + (scratch / "no.h5").string() + out).code,
+            3);
   const Outcome late = run("dynamic " + data("cube.toml") + " --no-images --time-limit 0.05" + out);
   EXPECT_EQ(late.code, 4);
   EXPECT_THAT(late.err, HasSubstr("the partial result was saved"));

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include "src/dynamic/converged_reference.h"
+#include "src/scene/furnished_room.h"
 #include "tests/dynamic/rooms.h"
 
 namespace exitance {
@@ -60,6 +61,71 @@ class Followed {
   VersionDifference::Search search = VersionDifference::Search::shadow_volumes;
   ChangeWork work;
 };
+
+/// Sums of a column and of the rows of each element, by searches of their own from every point.
+void expect_columns_equal_rows(const Scene& scene, const MeshOptions& mesh) {
+  const EditedScene edited(scene);
+  const auto version = std::make_shared<const SceneVersion>(edited, mesh);
+  std::vector<PointRow> rows;
+  for (std::uint32_t e = 0; e < version->elements(); ++e) rows.push_back(version->row(e));
+  std::vector<std::size_t> next(rows.size());
+  for (std::uint32_t p = 0; p < version->patches(); ++p) {
+    std::uint64_t tests = 0;
+    const FormFactorColumn column = make_column(version, p, tests);
+    auto at = column.element.begin();
+    for (std::uint32_t e = 0; e < rows.size(); ++e) {
+      double F = 0, F_row = 0, error = 1e-13;
+      if (at != column.element.end() && *at == e) F = column.F[static_cast<std::size_t>(at++ - column.element.begin())];
+      if (next[e] < rows[e].column.size() && rows[e].column[next[e]] == p) {
+        F_row = rows[e].F[next[e]];
+        error += 2 * rows[e].F_error[next[e]++];
+      }
+      ASSERT_NEAR(F, F_row, error) << "element " << e << ", patch " << p;
+    }
+  }
+}
+
+TEST(FormFactorColumn, EqualsTheRowsThatLookFromEachPoint) {
+  Scene scene = test_room();
+  Surface frame;  // not convex, with a hole: patches of several pieces
+  frame.polygon.outer = {{0.25, 1, 1.75}, {2.25, 1, 1.75}, {2.25, 2.5, 1.75}, {1.25, 2.5, 1.75}, {1.25, 1.75, 1.75},
+                         {0.25, 1.75, 1.75}};
+  frame.polygon.holes = {{{0.5, 1.25, 1.75}, {0.5, 1.5, 1.75}, {1, 1.5, 1.75}, {1, 1.25, 1.75}}};
+  frame.object = 4;
+  scene.surfaces.push_back(frame);
+  std::reverse(frame.polygon.outer.begin(), frame.polygon.outer.end());
+  std::reverse(frame.polygon.holes[0].begin(), frame.polygon.holes[0].end());
+  scene.surfaces.push_back(frame);
+  expect_columns_equal_rows(scene, {0.7, 2});
+  expect_columns_equal_rows(make_furnished_room(60, 3), {1.5, 1});
+}
+
+TEST(DynamicRadiosity, NothingDependsOnWhichColumnsAreKept) {
+  const auto solve = [](std::uint64_t memory) {
+    RandomEdits random(3);
+    EditedScene edited(test_room());
+    DynamicRadiosity state(std::make_shared<SceneVersion>(edited, kMesh), edited.scene(), memory);
+    for (int k = 0; k < 200; ++k) {
+      if (k % 40 == 39) {
+        const Edit edit = random.next(edited);
+        if (edited.apply(edit).geometry)
+          state.change_geometry(std::make_shared<SceneVersion>(state.version(), edited, kMesh, edit.object),
+                                edited.scene(), edit.object, "");
+        state.change_materials(edited.scene(), edit.object);
+      }
+      const auto change = state.strongest_change();
+      if (change.energy >= 0 && k % 2 == 0) {
+        state.redistribute(change.change, change.patch, VersionDifference::Search::shadow_volumes);
+      } else {
+        state.propagate(state.strongest().patch);
+      }
+    }
+    return state.element_B();
+  };
+  const auto all = solve(DynamicRadiosity::kColumnMemory);
+  EXPECT_LT(largest_difference(all, solve(0)), 1e-12);
+  EXPECT_LT(largest_difference(all, solve(20'000)), 1e-12) << "some";
+}
 
 TEST(DynamicRadiosity, WithoutEditsItIsProgressiveRefinement) {
   Followed room(test_room());
@@ -120,8 +186,8 @@ TEST(DynamicRadiosity, ShadowVolumesMissNothingThatLookingEverywhereFinds) {
     for (std::uint32_t p = 0; p < version->patches(); ++p) {
       if (version->object_of_patch(p) == SceneVersion::kVoid) continue;
       ChangeWork all, some;
-      const auto everywhere = difference.column(p, VersionDifference::Search::everywhere, all);
-      const auto found = difference.column(p, VersionDifference::Search::shadow_volumes, some);
+      const auto everywhere = difference.column(p, VersionDifference::Search::everywhere, nullptr, all);
+      const auto found = difference.column(p, VersionDifference::Search::shadow_volumes, nullptr, some);
       auto at = found.begin();
       for (const FormFactorChange& c : everywhere) {
         if (std::fabs(c.after - c.before) <= c.error + 1e-15) continue;

@@ -177,6 +177,57 @@ TEST(EditSession, ASelectedObjectsMovesBecomeOneRemovalAndOneAddition) {
   EXPECT_LT(distance(session.solution()), 1e-10);
 }
 
+TEST(EditSession, WhatASelectedObjectChangesIsErasedWhenItChangesAgain) {
+  EditSession session(test_room(), plain());
+  session.work({});
+  session.apply({Operation::select, 1, {}, {}, {}});
+  session.work({});
+  const std::vector<double> without = [&] {
+    std::vector<double> B = session.solution().element_B();
+    const std::vector<double> change = session.temporary_change();
+    EXPECT_EQ(B.size(), change.size());
+    for (std::size_t i = 0; i < B.size(); ++i) B[i] -= change[i];
+    return B;
+  }();
+  session.apply(moved(1, {0.25, 0.5, 0}));
+  EXPECT_THAT(session.temporary_change(), IsEmpty());
+  const std::vector<double> now = session.solution().element_B();
+  for (std::size_t i = 0; i < now.size(); ++i) ASSERT_NEAR(now[i], without[i], 1e-12);
+}
+
+TEST(EditSession, WithoutTheLogWhatWasInterruptedStaysWrong) {
+  SessionOptions options = plain();
+  options.log = false;
+  EditSession session(test_room(), options);
+  session.work({});
+  Budget few;
+  few.shots = 4;
+  for (int k = 1; k < 4; ++k) {
+    session.apply(moved(1, {0.2 * k, 0.1, 0}));
+    session.work(few);
+    EXPECT_LE(session.log().size(), 1u) << "only the latest change is redistributed";
+  }
+  EXPECT_TRUE(session.work({}).finished);
+  EXPECT_GT(distance(session.solution()), 1e-4);
+}
+
+TEST(FrameReferences, ByShotsAreThoseByGathering) {
+  EditSession session(test_room(), plain());
+  FrameReferences gathers(test_room(), plain(), session.solution(), std::uint64_t{1} << 40),
+      shoots(test_room(), plain(), session.solution(), 0, 1e-12);
+  ASSERT_TRUE(gathers.gathers());
+  ASSERT_FALSE(shoots.gathers());
+  const Edit edit = moved(1, {0.5, 0, 0});
+  session.apply(edit);
+  gathers.apply(edit);
+  shoots.apply(edit);
+  const auto never = [] { return false; };
+  const auto a = gathers.find(session.solution(), never), b = shoots.find(session.solution(), never);
+  ASSERT_TRUE(a && b);
+  for (std::size_t i = 0; i < a->size(); ++i) ASSERT_NEAR((*a)[i], (*b)[i], 1e-9);
+  EXPECT_FALSE(shoots.find(session.solution(), never)->empty());
+}
+
 TEST(EditSession, WhatStaysInTheUmbraIsKept) {
   Scene scene = test_room();
   // A box that leaves only a slit below the light hides nearly all of it from the floor, wherever it is shifted to.
