@@ -15,6 +15,8 @@
 #include "src/cli/console.h"
 #include "src/cli/interrupt.h"
 #include "src/cli/json_text.h"
+#include "src/cli/link_frames.h"
+#include "src/cli/link_settings.h"
 #include "src/cli/number_range.h"
 #include "src/cli/verbs.h"
 #include "src/dynamic/converged_reference.h"
@@ -82,8 +84,10 @@ class Dynamic {
     verb.add_option("SCENE", path_, "Scene file (.toml) with events")->required();
     verb.add_option("--method", method_,
                     "scratch: progressive refinement from nothing after each edit; restart: from the previous solution; "
-                    "redistribute: radiosity redistribution")
-        ->check(CLI::IsMember({"scratch", "restart", "redistribute"}))
+                    "redistribute: radiosity redistribution; of hierarchical links: rebuild, direct, hvt (hierarchical "
+                    "visibility testing), hvt-peu (and progressive energy update)")
+        ->check(CLI::IsMember(
+            {"scratch", "restart", "redistribute", "rebuild", "direct", "hvt", "hvt-peu"}))
         ->capture_default_str();
     verb.add_option("--strategy", strategy_, "1: redistribute first, down to the threshold; 2: interleave")
         ->check(CLI::IsMember({"1", "2"}))
@@ -97,6 +101,8 @@ class Dynamic {
     verb.add_option("--importance-points", options_.importance.points, "Points an object of estimated importance")
         ->check(whole_number_between(1, 1000))
         ->capture_default_str();
+    links_.add_to(verb);
+    links_.add_update_to(verb);
     verb.add_option("--tolerance", options_.tolerance, "When a frame is done: bound of B's error relative to B max")
         ->check(positive_number())
         ->capture_default_str();
@@ -137,6 +143,22 @@ class Dynamic {
     read_replay();
     ResultFolder folder(folder_);
     draft_ = folder.draft();
+    if (const auto by_links = link_method_named(method_)) {
+      LinkFrameOptions how;
+      how.links = links_.chosen(given, patch_size_->count() > 0 ? std::optional(options_.mesh.patch_size)
+                                                                      : std::nullopt);
+      how.links.tolerance = options_.tolerance;
+      how.links.mesh.memory_limit = available_memory_bytes();
+      how.method = *by_links;
+      how.references = reference_;
+      how.images = images_;
+      how.stop = [this] { return stop(); };
+      const LinkFrames frames = follow_links(given, how, draft_);
+      frames_ = frames.frames;
+      summary_ = frames.summary;
+      return finish(folder);
+    }
+    links_.refuse_any("rebuild, direct, hvt or hvt-peu");
     set_options(given.scene);
 
     EditSession session(given.scene, options_);
@@ -153,6 +175,11 @@ class Dynamic {
     }
     const double last = given.events.empty() ? 0 : given.events.back().time;
     if (work_off_ && !stop()) frame(given, session, references, last, {"work off"});
+    finish(folder);
+  }
+
+ private:
+  void finish(const ResultFolder& folder) {
     write_whole_file(draft_ / "frames.json", [&](std::ostream& out) { out << frames_.dump(1) << '\n'; });
     folder.publish();
     print_results(json_ ? frames_.dump(1) + '\n' : summary_);
@@ -162,7 +189,6 @@ class Dynamic {
     }
   }
 
- private:
   bool stop() {
     partial_ = partial_ || interrupted() || (time_limit_ && seconds_since(start_) > *time_limit_);
     return partial_;
@@ -292,6 +318,7 @@ class Dynamic {
   }
 
   SessionOptions options_;
+  LinkSettings links_;
   CLI::Option *patch_size_ = nullptr, *elements_ = nullptr;
   std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", replay_, folder_;
   std::optional<std::uint64_t> budget_shots_;

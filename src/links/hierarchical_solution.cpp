@@ -18,31 +18,24 @@ constexpr std::size_t kMeasured = 256, kPairs = 64, kDraws = 1024;
 /// What the plain formula of an open link may lose by rounding.
 constexpr double kOpenError = 0x1p-46;
 
-/// max ρ Σ F_error B / (1 − max ρ Σ F) / max B, worst band.
-double error_of_form_factors(const LinkedRadiosity& links) {
+/// Max ρ Σ F_error B times the factor of the error bound, relative to max B, worst band.
+double error_of_form_factors(const LinkedRadiosity& links, double factor) {
   const NodeRadiosity& radiosity = links.radiosity();
   const std::uint32_t bands = radiosity.bands();
   double worst = 0;
   for (std::uint32_t b = 0; b < bands; ++b) {
-    double largest = 0, contraction = 0, size = 0;
+    double largest = 0, size = 0;
     for (std::uint32_t r = 0; r < links.tree().roots().size(); ++r) {
-      const Root& root = links.tree().root(r);
-      if (!root.present) continue;
-      double error = 0, row_sum = 1;
+      double error = 0;  // of all that the root receives: no leaf receives more
       for (const Link& link : links.links().of_receiver(r)) {
         if (link.ghost || link.blocked) continue;
-        error +=
-            (link.open ? kOpenError : kPointTolerance) * std::fabs(radiosity.B()[std::size_t{link.source} * bands + b]);
+        const double B = std::fabs(radiosity.B()[std::size_t{link.source} * bands + b]);
+        error += (link.open ? kOpenError : kPointTolerance) * B;
+        size = std::max(size, B);
       }
-      for (std::uint32_t n = root.node_first; n < root.node_first + root.node_count; ++n) {
-        row_sum = std::max(row_sum, radiosity.row_sum(n));
-        size = std::max(size, std::fabs(radiosity.B()[std::size_t{n} * bands + b]));
-      }
-      const double rho = radiosity.rho()[std::size_t{r} * bands + b];
-      largest = std::max(largest, rho * error);
-      contraction = std::max(contraction, rho * row_sum);
+      largest = std::max(largest, radiosity.rho()[std::size_t{r} * bands + b] * error);
     }
-    if (size > 0) worst = std::max(worst, largest / (1 - std::min(1.0, contraction)) / size);
+    if (largest > 0) worst = std::max(worst, largest / size * factor);
   }
   return worst;
 }
@@ -134,7 +127,7 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
   s.patches.residual = result.update.exchange.residual;
   s.patches.error_bound = result.update.exchange.error_bound;
   s.patches.converged = result.update.exchange.converged;
-  s.form_factor_error = error_of_form_factors(links);
+  s.form_factor_error = error_of_form_factors(links, result.update.exchange.factor);
   s.seconds_form_factors = result.update.seconds_links;
   s.seconds_solve = result.update.seconds_exchange;
 

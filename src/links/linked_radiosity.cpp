@@ -1,5 +1,7 @@
 #include "src/links/linked_radiosity.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -30,6 +32,12 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+double processor_time() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
 
 double total_area(const Scene& scene) {
   double area = 0;
@@ -101,6 +109,7 @@ void LinkedRadiosity::exchange(LinkUpdate& update) {
 
 LinkUpdate LinkedRadiosity::build() {
   Stopwatch whole;
+  const double cpu = processor_time();
   LinkUpdate update;
   links_ = LinkIndex(tree_.roots().size());
   any_stale_ = false;
@@ -117,11 +126,13 @@ LinkUpdate LinkedRadiosity::build() {
   }
   exchange(update);
   update.seconds = whole.lap();
+  update.cpu_seconds = processor_time() - cpu;
   return update;
 }
 
 LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod method) {
   Stopwatch whole, watch;
+  const double cpu = processor_time();
   std::ranges::fill(moved_, 0);
   std::ranges::fill(relit_, 0);
   for (const Edit& edit : edits) {
@@ -150,6 +161,7 @@ LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod metho
     update = build();
     update.seconds_scene = seconds_scene;
     update.seconds = whole.lap();
+    update.cpu_seconds = processor_time() - cpu;
     return update;
   }
 
@@ -176,6 +188,7 @@ LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod metho
     update.seconds_exchange = watch.lap();
   }
   update.seconds = whole.lap();
+  update.cpu_seconds = processor_time() - cpu;
   return update;
 }
 

@@ -39,7 +39,8 @@ struct LinkUpdate {
   double seconds_scene = 0;  ///< wall clock: obstacles and their indices, places of nodes
   double seconds_links = 0;  ///< finding, testing and refining links
   double seconds_exchange = 0;
-  double seconds = 0;  ///< in all
+  double seconds = 0;      ///< in all
+  double cpu_seconds = 0;  ///< in all, of all threads: what else runs on the machine counts little
 };
 
 class LinkedRadiosity {

@@ -16,6 +16,8 @@ namespace {
 
 /// Patches with this share of the most unshot energy shoot together.
 constexpr double kShootTogether = 0.1;
+/// Of the bound: when a sweep adds little enough to w, and more than what rounding does to it, relative.
+constexpr double kReflected = 0.1, kSlack = 1e-12;
 
 template <class Work>
 void for_each_root(const PatchTree& tree, const Work& work) {
@@ -50,7 +52,7 @@ NodeRadiosity::NodeRadiosity(const PatchTree& tree, const EditedScene& scene)
 void NodeRadiosity::fit_arrays() {
   const std::size_t nodes = tree_.nodes().size(), roots = tree_.roots().size();
   for (auto* values : {&B_, &next_, &H_, &received_, &unshot_}) values->resize(nodes * bands_);
-  for (auto* values : {&Y_, &row_sum_}) values->resize(nodes);
+  for (auto* values : {&Y_, &row_sum_, &w_, &next_w_}) values->resize(nodes);
   for (auto* values : {&rho_, &E_}) values->resize(roots * bands_);
   has_received_.resize(roots);
   there_.resize(roots);
@@ -109,27 +111,27 @@ void NodeRadiosity::change_materials(const EditedScene& scene, std::uint32_t obj
         B_[i] = B;
       }
     }
-    pull(r, B_);
-    pull(r, unshot_);
+    pull(r, B_, bands_);
+    pull(r, unshot_, bands_);
     find_luminance(r);
   }
 }
 
 /// Means over children, from the leaves up.
-void NodeRadiosity::pull(std::uint32_t r, std::vector<double>& values) {
+void NodeRadiosity::pull(std::uint32_t r, std::vector<double>& values, std::size_t bands) {
   const Root& root = tree_.root(r);
   for (std::size_t n = std::size_t{root.node_first} + root.node_count; n-- > root.node_first;) {
     const Node& node = tree_.nodes()[n];
     if (!node.has_children()) continue;
     double area = 0;
     for (std::uint32_t k = 0; k < 4; ++k) area += tree_.node(node.first_child + k).area;
-    for (std::uint32_t b = 0; b < bands_; ++b) {
+    for (std::size_t b = 0; b < bands; ++b) {
       double sum = 0;
       for (std::size_t k = 0; k < 4; ++k) {
         const std::size_t child = node.first_child + k;
-        sum += tree_.nodes()[child].area * values[child * bands_ + b];
+        sum += tree_.nodes()[child].area * values[child * bands + b];
       }
-      values[n * bands_ + b] = sum / area;
+      values[n * bands + b] = sum / area;
     }
   }
 }
@@ -145,14 +147,20 @@ void NodeRadiosity::find_luminance(std::uint32_t r) {
 LinkExchange NodeRadiosity::gather(const LinkIndex& links, double tolerance, std::uint64_t most) {
   struct OfRoot {
     std::vector<double> change, size;  ///< largest of each band
-    double row_sum = 0;                ///< largest
+    double reflected = 0, w = 0;       ///< largest of what a sweep adds to w, and of w
   };
-  std::vector<OfRoot> of_root(tree_.roots().size(), {std::vector<double>(bands_), std::vector<double>(bands_), 0});
+  std::vector<OfRoot> of_root(tree_.roots().size(), {std::vector<double>(bands_), std::vector<double>(bands_), 0, 0});
   std::ranges::fill(next_, 0);
+  std::ranges::fill(next_w_, 0);
+  for (const Root& root : tree_.roots())
+    std::fill_n(w_.begin() + root.node_first, root.node_count, root.present ? 1.0 : 0.0);
+  bool bounding = true;  // whether w is still sought
 
   const auto sweep = [&](std::uint32_t r) {
     const Root& root = tree_.root(r);
-    const std::size_t first = root.node_first, count = root.node_count, width = bands_ + 1;
+    const std::size_t first = root.node_first, count = root.node_count, width = bands_ + 2;
+    const auto rho = std::span(rho_).subspan(std::size_t{r} * bands_, bands_);
+    const double largest_rho = *std::ranges::max_element(rho);
     // Sums keep eleven more bits, so that what they lose does not count.
     thread_local std::vector<long double> sums;
     sums.assign(count * width, 0);
@@ -164,11 +172,12 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, double tolerance, std
       const double* B = B_.data() + std::size_t{link.source} * bands_;
       for (std::uint32_t b = 0; b < bands_; ++b) sum[b] += static_cast<long double>(F) * B[b];
       sum[bands_] += F;
+      if (bounding) sum[bands_ + 1] += static_cast<long double>(F) * w_[link.source];
     }
     OfRoot& found = of_root[r];
     std::ranges::fill(found.change, 0);
     std::ranges::fill(found.size, 0);
-    found.row_sum = 0;
+    if (bounding) found.reflected = found.w = 0;
     for (std::size_t n = first; n < first + count; ++n) {
       const Node& node = tree_.nodes()[n];
       const long double* sum = sums.data() + (n - first) * width;
@@ -176,41 +185,52 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, double tolerance, std
         for (std::size_t b = 0; b < width; ++b) sums[(node.first_child + k - first) * width + b] += sum[b];
       }
       row_sum_[n] = static_cast<double>(sum[bands_]);
+      if (bounding && !node.has_children()) {
+        next_w_[n] = 1 + largest_rho * static_cast<double>(sum[bands_ + 1]);
+        found.reflected = std::max(found.reflected, next_w_[n] - w_[n]);
+        found.w = std::max(found.w, w_[n]);
+      }
       for (std::size_t b = 0; b < bands_; ++b) {
-        const std::size_t i = n * bands_ + b, material = std::size_t{r} * bands_ + b;
+        const std::size_t i = n * bands_ + b;
         H_[i] = static_cast<double>(sum[b]);
         if (node.has_children()) continue;
-        next_[i] = E_[material] + rho_[material] * H_[i];
+        next_[i] = E_[std::size_t{r} * bands_ + b] + rho[b] * H_[i];
         found.change[b] = std::max(found.change[b], std::fabs(next_[i] - B_[i]));
         found.size[b] = std::max(found.size[b], std::fabs(next_[i]));
-        found.row_sum = std::max(found.row_sum, row_sum_[n]);
       }
     }
-    pull(r, next_);
+    pull(r, next_, bands_);
+    if (bounding) pull(r, next_w_, 1);
   };
 
   LinkExchange result;
-  double best = std::numeric_limits<double>::infinity();
+  result.factor = std::numeric_limits<double>::infinity();
+  double best = result.factor;
   while (result.iterations < most) {
     for_each_root(tree_, sweep);
     ++result.iterations;
     std::swap(B_, next_);
+    double reflected = 0, w = 0;
+    for (std::uint32_t r = 0; r < of_root.size(); ++r) {
+      if (!tree_.root(r).present) continue;
+      reflected = std::max(reflected, of_root[r].reflected);
+      w = std::max(w, of_root[r].w);
+    }
+    reflected += kSlack * w;
+    if (bounding && reflected < 1) result.factor = w * (1 + kSlack) / (1 - reflected);
+    bounding = bounding && reflected > kReflected;
+    if (bounding) std::swap(w_, next_w_);
     result.residual = result.error_bound = 0;
-    double lost = 0;
     for (std::uint32_t b = 0; b < bands_; ++b) {
-      double change = 0, size = 0, contraction = 0;
+      double change = 0, size = 0;
       for (std::uint32_t r = 0; r < of_root.size(); ++r) {
         if (!tree_.root(r).present) continue;
         change = std::max(change, of_root[r].change[b]);
         size = std::max(size, of_root[r].size[b]);
-        contraction = std::max(contraction, rho_[std::size_t{r} * bands_ + b] * std::max(1.0, of_root[r].row_sum));
       }
-      if (change == 0) continue;
-      const double relative = change / size, rounding = 8 * kRoundoff;
-      lost = std::max(lost, contraction < 1 ? rounding / (1 - contraction) : 0);
-      result.residual = std::max(result.residual, relative);
-      result.error_bound = std::max(result.error_bound, contraction < 1 ? (relative + rounding) / (1 - contraction)
-                                                                        : std::numeric_limits<double>::infinity());
+      if (size == 0) continue;
+      result.residual = std::max(result.residual, change / size);
+      result.error_bound = std::max(result.error_bound, (change / size + 8 * kRoundoff) * result.factor);
     }
     result.converged = result.error_bound <= tolerance;
     if (result.converged || (result.residual <= 16 * kRoundoff && result.residual >= best)) break;
@@ -266,8 +286,8 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
         }
       }
     }
-    pull(r, B_);
-    pull(r, unshot_);
+    pull(r, B_, bands_);
+    pull(r, unshot_, bands_);
     find_luminance(r);
     measure(r);
   };

@@ -17,10 +17,12 @@ namespace exitance {
 struct LinkExchange {
   std::uint64_t iterations = 0;  ///< sweeps
   double residual = 0;           ///< what the last sweep changed
-  /// ‖B − B*‖∞ ≤ residual / (1 − max ρ max(1, Σ F)), rounding included: Σ over all links that end at a leaf or above
-  /// it. Infinite where that is 1 or more.
+  /// Proven, rounding included: ‖B − B*‖∞ ≤ ‖r‖∞ max w / (1 − d), r what a sweep changes, for any w > 0 with
+  /// w − ρ F w ≥ 1 − d > 0. Here w is 1 and its first reflections, by the largest ρ of each patch. Row sums of ρ F may
+  /// exceed 1 somewhere, as those of few points do in narrow gaps.
   double error_bound = 0;
   bool converged = false;
+  double factor = 0;  ///< of the bound: max w / (1 − d)
 };
 
 /// B [W/m²] of every node and band at [node * bands + band]; of a leaf E + ρ H with H the sum of what its own links and
@@ -65,7 +67,7 @@ class NodeRadiosity {
   void fit_arrays();
   void set_materials(const EditedScene& scene, std::uint32_t object);
   void start(std::uint32_t root);
-  void pull(std::uint32_t root, std::vector<double>& values);
+  void pull(std::uint32_t root, std::vector<double>& values, std::size_t bands);
   void find_luminance(std::uint32_t root);
 
   const PatchTree& tree_;
@@ -74,6 +76,7 @@ class NodeRadiosity {
   std::vector<double> rho_, E_;                     ///< by root and band
   std::vector<double> B_, next_, H_;                ///< by node and band
   std::vector<double> Y_, row_sum_;                 ///< by node
+  std::vector<double> w_, next_w_;                  ///< by node, of the error bound
   std::vector<double> received_, unshot_;           ///< by node and band
   std::vector<std::uint8_t> has_received_, there_;  ///< by root
 };
