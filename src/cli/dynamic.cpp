@@ -15,6 +15,8 @@
 #include "src/cli/console.h"
 #include "src/cli/interrupt.h"
 #include "src/cli/json_text.h"
+#include "src/cli/link_frames.h"
+#include "src/cli/link_settings.h"
 #include "src/cli/memory_limit.h"
 #include "src/cli/number_range.h"
 #include "src/cli/reference_store.h"
@@ -44,10 +46,12 @@ class Dynamic {
  public:
   explicit Dynamic(CLI::App& verb) {
     verb.add_option("SCENE", path_, "Scene file (.toml) with events")->required();
-    verb.add_option("--method", method_,
-                    "scratch: progressive refinement from nothing after each edit; restart: from the previous solution; "
-                    "redistribute: radiosity redistribution")
-        ->check(CLI::IsMember({"scratch", "restart", "redistribute"}))
+    verb.add_option(
+            "--method", method_,
+            "scratch: progressive refinement from nothing after each edit; restart: from the previous solution; "
+            "redistribute: radiosity redistribution; of hierarchical links: rebuild, direct, hvt (hierarchical "
+            "visibility testing), hvt-peu (and progressive energy update)")
+        ->check(CLI::IsMember({"scratch", "restart", "redistribute", "rebuild", "direct", "hvt", "hvt-peu"}))
         ->capture_default_str();
     verb.add_option("--strategy", strategy_, "1: redistribute first, down to the threshold; 2: interleave")
         ->check(CLI::IsMember({"1", "2"}))
@@ -61,12 +65,15 @@ class Dynamic {
     verb.add_option("--importance-points", options_.importance.points, "Points an object of estimated importance")
         ->check(whole_number_between(1, 1000))
         ->capture_default_str();
+    links_.add_to(verb);
+    links_.add_update_to(verb);
     verb.add_option("--tolerance", options_.tolerance, "When a frame is done: bound of B's error relative to B max")
         ->check(positive_number())
         ->capture_default_str();
     verb.add_option("--budget-shots", budget_shots_, "Most shots a frame after the first; 0: none")
         ->check(whole_number_between(0));
-    verb.add_option("--budget-ms", budget_ms_, "Milliseconds a frame after the first; 0: none")->check(number_between(0));
+    verb.add_option("--budget-ms", budget_ms_, "Milliseconds a frame after the first; 0: none")
+        ->check(number_between(0));
     verb.add_option("--replay", replay_, "frames.json of an earlier run whose numbers of shots to repeat");
     verb.add_flag("!--no-log", options_.log, "Forget what an edit interrupts: it is never redistributed");
     verb.add_flag("--work-off", work_off_, "After the last event one more frame that works off all that was left");
@@ -105,6 +112,22 @@ class Dynamic {
     read_replay();
     ResultFolder folder(folder_);
     draft_ = folder.draft();
+    if (const auto by_links = link_method_named(method_)) {
+      LinkFrameOptions how;
+      how.links =
+          links_.chosen(given, patch_size_->count() > 0 ? std::optional(options_.mesh.patch_size) : std::nullopt);
+      how.links.tolerance = options_.tolerance;
+      how.links.mesh.memory_limit = memory_limit_.bytes();
+      how.method = *by_links;
+      how.references = reference_;
+      how.images = images_;
+      how.stop = [this] { return stop(); };
+      const LinkFrames frames = follow_links(given, how, draft_);
+      frames_ = frames.frames;
+      summary_ = frames.summary;
+      return finish(folder);
+    }
+    links_.refuse_any("rebuild, direct, hvt or hvt-peu");
     set_options(given.scene);
 
     store_.emplace(reference_file_);
@@ -122,9 +145,14 @@ class Dynamic {
     }
     const double last = given.events.empty() ? 0 : given.events.back().time;
     if (work_off_ && !stop()) frame(given, session, references, last, {"work off"});
+    finish(folder);
+  }
+
+ private:
+  void finish(const ResultFolder& folder) {
     write_whole_file(draft_ / "frames.json", [&](std::ostream& out) { out << frames_.dump(1) << '\n'; });
     folder.publish();
-    store_->save();
+    if (store_) store_->save();
     print_results(json_ ? frames_.dump(1) + '\n' : summary_);
     if (partial_) {
       print_message(fmt::format("stopped in frame {}; the partial result was saved", frames_.size() - 1));
@@ -132,7 +160,6 @@ class Dynamic {
     }
   }
 
- private:
   bool stop() {
     partial_ = partial_ || interrupted() || (time_limit_ && seconds_since(start_) > *time_limit_);
     return partial_;
@@ -237,11 +264,10 @@ class Dynamic {
     frame["elements"] = state.version().present_elements();
     frame["unit"] = given.scene.unit;
     if (images_) draw(given, session, time, B);
-    summary_ += fmt::format("frame {:3}  {:>9.3f} s  {:5} + {:5} shots  error {}  of the 1 % {}  {}\n", frames_.size(),
-                            work.seconds, work.redistributions, work.propagations,
-                            error ? fmt::format("{:.3g}", error->all) : "-",
-                            error ? fmt::format("{:.3g}", error->worst_1_percent) : "-",
-                            fmt::format("{}", fmt::join(edits, ", ")));
+    summary_ += fmt::format(
+        "frame {:3}  {:>9.3f} s  {:5} + {:5} shots  error {}  of the 1 % {}  {}\n", frames_.size(), work.seconds,
+        work.redistributions, work.propagations, error ? fmt::format("{:.3g}", error->all) : "-",
+        error ? fmt::format("{:.3g}", error->worst_1_percent) : "-", fmt::format("{}", fmt::join(edits, ", ")));
     frames_.push_back(std::move(frame));
   }
 
@@ -261,8 +287,10 @@ class Dynamic {
   }
 
   SessionOptions options_;
+  LinkSettings links_;
   CLI::Option *patch_size_ = nullptr, *elements_ = nullptr;
-  std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", replay_, reference_file_, folder_;
+  std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", replay_, reference_file_,
+                     folder_;
   MemoryLimit memory_limit_;
   std::optional<std::uint64_t> budget_shots_;
   std::optional<double> budget_ms_, time_limit_;

@@ -1,5 +1,7 @@
 #include "src/cli/scene_options.h"
 
+#include <filesystem>
+
 #include "src/scene/reader.h"
 
 namespace exitance {
@@ -18,6 +20,12 @@ Scene SceneOptions::read(bool keep_faults) const {
                             .flip = flip_,
                             .two_sided = two_sided_,
                             .keep_faults = keep_faults});
+}
+
+DynamicScene SceneOptions::read_dynamic() const {
+  if (std::filesystem::path(path_).extension() == ".toml")
+    return read_dynamic_scene(path_, emission_ == "radiance" ? Emission::radiance : Emission::exitance);
+  return {.scene = read(), .links = {}, .events = {}, .camera_path = {}};
 }
 
 }  // namespace exitance

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "src/scene/scene.h"
+#include "src/scene/scene_file.h"
 
 namespace exitance {
 
@@ -15,6 +15,9 @@ class SceneOptions {
 
   /// keep_faults: see ReadOptions. Throws InputError.
   Scene read(bool keep_faults = false) const;
+
+  /// The scene with what its file tells of its events and links: nothing, where it is no scene file.
+  DynamicScene read_dynamic() const;
 
  private:
   std::string path_, emission_ = "exitance";

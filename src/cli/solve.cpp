@@ -13,12 +13,14 @@
 #include "src/cli/console.h"
 #include "src/cli/given_options.h"
 #include "src/cli/interrupt.h"
+#include "src/cli/link_settings.h"
 #include "src/cli/memory_limit.h"
 #include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/ray_settings.h"
 #include "src/cli/scene_options.h"
 #include "src/cli/verbs.h"
+#include "src/links/hierarchical_solution.h"
 #include "src/output/process_memory.h"
 #include "src/output/report.h"
 #include "src/output/result_folder.h"
@@ -55,6 +57,11 @@ std::string summary(const Report& r) {
   line("surfaces", fmt::format("{}", r.surfaces));
   line("patches, elements", fmt::format("{}, {}", r.patches, r.elements));
   line("method", fmt::format("{}, receivers {}, visibility {}", r.method, r.receivers, r.visibility));
+  if (r.links) {
+    line("sub-patches", fmt::format("{}", r.links->sub_patches));
+    line("links", fmt::format("{} active, {} shadow, {} ghost; E-E {}, E-O {}, O-O {}", r.links->active,
+                              r.links->shadow, r.links->ghost, r.links->environment, r.links->mixed, r.links->dynamic));
+  }
   line("pairs", fmt::format("{:.1f} % facing away, {:.1f} % open, {:.1f} % blocked, {:.1f} % partial",
                             percent(r.pairs.facing_away), percent(r.pairs.open), percent(r.pairs.blocked),
                             percent(r.pairs.partial)));
@@ -87,8 +94,9 @@ class Solve {
   explicit Solve(CLI::App& verb) : verb_(verb) {
     scene_.add_to(verb);
     verb.add_option("--method", method_,
-                    "gather: whole matrix; shoot: progressive refinement, without a matrix if need be")
-        ->check(CLI::IsMember({"gather", "shoot"}))
+                    "gather: whole matrix; shoot: progressive refinement, without a matrix if need be; hierarchical: "
+                    "links between sub-patches")
+        ->check(CLI::IsMember({"gather", "shoot", "hierarchical"}))
         ->capture_default_str();
     verb.add_option("--solver", solver_, "How gathering solves")
         ->check(CLI::IsMember({"gauss-seidel", "jacobi", "krylov", "direct"}))
@@ -102,6 +110,7 @@ class Solve {
         ->check(positive_number())
         ->capture_default_str();
     rays_.add_to(verb);
+    links_.add_to(verb);
     patch_size_ = verb.add_option("--patch-size", options_.mesh.patch_size,
                                   "Longest edge of a patch [m]; 0: surfaces as they are; as the scene says unless given")
                       ->check(number_between(0))
@@ -138,6 +147,7 @@ class Solve {
         threads_ ? *threads_ : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     catch_interrupts();
+    if (method_ != "hierarchical") links_.refuse_any("hierarchical");
     if (shots_ && method_ != "shoot") throw CLI::ValidationError("--shots", "needs --method shoot");
 
     const Scene scene = scene_.read();
@@ -151,8 +161,12 @@ class Solve {
     if (!folder_.empty()) folder.emplace(folder_);
     const double loading = seconds_since(start);
 
-    const SceneSolution solution = solve(scene, start);
+    const bool by_links = method_ == "hierarchical";
+    std::optional<HierarchicalSolution> linked;
+    if (by_links) linked.emplace(solve_links(scene));
+    const SceneSolution solution = by_links ? std::move(linked->solution) : solve(scene, start);
     Report report = make_report(scene, solution);
+    if (by_links) add_links(report, *linked);
     report.method = method_;
     report.threads = static_cast<unsigned>(threads);
     report.seed = options_.seed;
@@ -173,6 +187,37 @@ class Solve {
   }
 
  private:
+  HierarchicalSolution solve_links(const Scene& scene) {
+    if (receivers_ != "points") throw CLI::ValidationError("--receivers", "--method hierarchical receives at points");
+    if (rays_.chosen(options_.seed)) throw CLI::ValidationError("--visibility", "--method hierarchical is exact");
+    std::optional<double> patch_size;
+    if (patch_size_->count() > 0) patch_size = options_.mesh.patch_size;
+    HierarchicalOptions how;
+    const DynamicScene given = scene_.read_dynamic();
+    how.links = links_.chosen(given, patch_size);
+    how.links.tolerance = options_.tolerance;
+    how.links.mesh.memory_limit = memory_limit_.bytes();
+    how.seed = options_.seed;
+    std::vector<std::uint8_t> moves(scene.objects.size());
+    for (const Event& event : given.events) moves[event.edit.object] = 1;
+    return solve_by_links(scene, how, moves);
+  }
+
+  static void add_links(Report& report, const HierarchicalSolution& s) {
+    report.links = Report::Links{.sub_patches = s.sub_patches,
+                                 .active = s.links.active,
+                                 .shadow = s.links.shadow,
+                                 .ghost = s.links.ghost,
+                                 .environment = s.links.environment,
+                                 .mixed = s.links.mixed,
+                                 .dynamic = s.links.dynamic,
+                                 .rounds = s.update.rounds,
+                                 .bytes = s.links.bytes,
+                                 .eps1 = s.options.eps1,
+                                 .eps2 = s.options.eps2,
+                                 .smallest_area = s.options.smallest_area};
+  }
+
   SceneSolution solve(const Scene& scene, Clock::time_point start) {
     static const std::map<std::string, GatherMethod> kSolvers = {{"gauss-seidel", GatherMethod::gauss_seidel},
                                                                  {"jacobi", GatherMethod::jacobi},
@@ -218,6 +263,7 @@ class Solve {
   SceneOptions scene_;
   SolveOptions options_;
   RaySettings rays_;
+  LinkSettings links_;
   std::string method_ = "gather", solver_ = "gauss-seidel", receivers_ = "points";
   std::optional<std::uint64_t> shots_;
   std::optional<double> time_limit_;

@@ -21,6 +21,22 @@ Json rays(const std::optional<Report::Rays>& rays) {
           {"cast", rays->cast},       {"mean_standard_error", or_null(rays->mean_standard_error)}};
 }
 
+Json links(const std::optional<Report::Links>& links) {
+  if (!links) return nullptr;
+  return {{"sub_patches", links->sub_patches},
+          {"active", links->active},
+          {"shadow", links->shadow},
+          {"ghost", links->ghost},
+          {"E-E", links->environment},
+          {"E-O", links->mixed},
+          {"O-O", links->dynamic},
+          {"rounds", links->rounds},
+          {"bytes", links->bytes},
+          {"eps1", links->eps1},
+          {"eps2", links->eps2},
+          {"smallest_area", links->smallest_area}};
+}
+
 Json manifest(const Report& r) {
   return {{"version", r.manifest.version},     {"commit", r.manifest.commit}, {"compiler", r.manifest.compiler},
           {"libraries", r.manifest.libraries}, {"threads", r.threads},        {"seed", r.seed},
@@ -40,6 +56,7 @@ std::string to_json(const Report& r) {
                      {"receivers", r.receivers},
                      {"visibility", r.visibility},
                      {"rays", rays(r.rays)},
+                     {"links", links(r.links)},
                      {"converged", r.converged},
                      {"iterations", r.iterations},
                      {"residual", r.residual},

@@ -25,7 +25,7 @@ struct Report {
   std::uint64_t elements = 0;
   std::uint32_t bands = 0;
   std::string unit;        ///< of B, E and H
-  std::string method;      ///< "gather", "shoot"
+  std::string method;      ///< "gather", "shoot", "hierarchical"
   std::string receivers;   ///< "points" or "area"
   std::string visibility;  ///< "exact" or "rays"
   /// Of visibility "rays".
@@ -38,6 +38,16 @@ struct Report {
     std::optional<double> mean_standard_error;  ///< of the form factors; none where nothing is known of it
   };
   std::optional<Rays> rays;
+
+  /// Of method "hierarchical": what was linked, and how.
+  struct Links {
+    std::uint64_t sub_patches = 0;
+    std::uint64_t active = 0, shadow = 0, ghost = 0;
+    std::uint64_t environment = 0, mixed = 0, dynamic = 0;  ///< active and shadow: E-E, E-O and O-O
+    std::uint64_t rounds = 0, bytes = 0;
+    double eps1 = 0, eps2 = 0, smallest_area = 0;
+  };
+  std::optional<Links> links;
 
   bool converged = false;
   std::uint64_t iterations = 0;

@@ -36,6 +36,7 @@ class SceneFile {
     read_unit(file);
     if (auto camera = file.table("camera")) scene_.camera = read_camera(*camera);
     if (auto mesh = file.table("mesh")) read_mesh_defaults(*mesh);
+    if (auto links = file.table("links")) read_link_defaults(*links);
     for (TomlTable& material : file.tables("material")) read_material(material);
     for (TomlTable& object : file.tables("object")) read_object(object);
     for (TomlTable& event : file.tables("event")) read_event(event);
@@ -43,7 +44,7 @@ class SceneFile {
     file.refuse_unknown_keys();
     if (scene_.surfaces.empty()) file.fail(0, "has no surfaces; add an [[object]]");
     settle_materials_with_events();
-    return {std::move(scene_), std::move(events_), std::move(camera_path_)};
+    return {std::move(scene_), links_, std::move(events_), std::move(camera_path_)};
   }
 
  private:
@@ -116,6 +117,18 @@ class SceneFile {
     if (elements < 1 || elements > kMostElements)
       table.fail(table.line_of("elements"), fmt::format("\"elements\" must be 1 to {}", kMostElements));
     scene_.mesh.elements_per_edge = static_cast<std::uint32_t>(elements);
+    table.refuse_unknown_keys();
+  }
+
+  void read_link_defaults(TomlTable& table) {
+    const auto number = [&](const char* key) {
+      const std::optional<double> value = table.number(key);
+      if (value && *value < 0) table.fail(table.line_of(key), fmt::format("\"{}\" must not be negative", key));
+      return value;
+    };
+    links_ = {number("patch_size"), number("eps2"), number("eps1"), number("B_eps"), number("smallest_area")};
+    if (links_.eps1 && links_.eps2 && *links_.eps1 > *links_.eps2)
+      table.fail(table.line_of("eps1"), "\"eps1\" must not be above \"eps2\"");
     table.refuse_unknown_keys();
   }
 
@@ -512,6 +525,7 @@ class SceneFile {
   Emission emission_;
   bool keep_faults_;
   Scene scene_;
+  LinkDefaults links_;
   std::vector<Event> events_;
   std::vector<CameraAt> camera_path_;
   std::map<std::string, std::uint32_t> material_numbers_;

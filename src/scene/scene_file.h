@@ -15,6 +15,13 @@
 //   elements = 2                    # along the edge of a patch
 //   small_patch = 0.02              # patches of this area [m²] or less are one element each
 //
+//   [links]                         # optional, likewise: how hierarchical links are refined
+//   patch_size = 0                  # longest edge of what is one quadtree [m]; that of [mesh] unless given
+//   smallest_area = 0.01            # of a sub-patch [m²]
+//   eps2 = 0.005                    # shares of the brightest E: refined while B F is above this,
+//   eps1 = 0.0025                   # un-refined below this,
+//   B_eps = 0.0001                  # left as it is by progressive updates where it could not change by more
+//
 //   [[material]]
 //   name = "white"
 //   rho = 0.7                       # or one number a band: [0.7, 0.7, 0.6]
@@ -57,6 +64,7 @@
 // known are errors.
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "src/scene/edit.h"
@@ -70,9 +78,17 @@ namespace exitance {
 /// keep_faults. Throws InputError.
 Scene read_scene_file(const std::filesystem::path& path, Emission emission, bool keep_faults);
 
+/// How a scene file wants its links refined (src/links/linked_radiosity.h), where nobody says otherwise.
+struct LinkDefaults {
+  std::optional<double> patch_size;         ///< [m] of what is one quadtree
+  std::optional<double> eps2, eps1, B_eps;  ///< shares of the brightest E
+  std::optional<double> smallest_area;      ///< [m²]
+};
+
 /// A scene and what happens to it.
 struct DynamicScene {
   Scene scene;
+  LinkDefaults links;
   std::vector<Event> events;  ///< in order of time
   std::vector<CameraAt> camera_path;
 };

@@ -4,23 +4,9 @@
 #include <boost/container/small_vector.hpp>
 #include <cmath>
 
-#include "geometry/vec3.h"
+#include "src/visibility/convex_loop.h"
 
 namespace exitance {
-
-using ConvexLoop = boost::container::small_vector<Vec3, 12>;
-
-/// What of a loop lies where dot(normal, v) ≥ 0, in the same order.
-inline ConvexLoop part_above(const Vec3& normal, const ConvexLoop& loop) {
-  ConvexLoop part;
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Vec3 &p = loop[k], &q = loop[(k + 1) % loop.size()];
-    const double hp = dot(normal, p), hq = dot(normal, q);
-    if (hp >= 0) part.push_back(p);
-    if ((hp > 0 && hq < 0) || (hp < 0 && hq > 0)) part.push_back((1 / (hp - hq)) * (hp * q - hq * p));
-  }
-  return part;
-}
 
 /// Maps the unit square to a convex loop of three corners or more, uniformly and without a jump: u turns around the
 /// first corner, √v goes away from it. The loop must outlive the map.

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include "src/visibility/fan_map.h"
@@ -48,18 +47,6 @@ ConvexLoop corners_from(const PolygonSoup& soup, const Source& source, const Vec
 /// The part of a source above the horizon, relative to the point of view, clockwise or counter-clockwise.
 ConvexLoop above_horizon(const Receiver& receiver, const PolygonSoup& soup, const Source& source) {
   return part_above(receiver.normal, corners_from(soup, source, receiver.point));
-}
-
-/// Lambert's form factor of a loop relative to the point of view, above the horizon (its sign: which way it runs).
-double lambert(const ConvexLoop& loop, const Vec3& unit_normal) {
-  double sum = 0;
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Vec3 &p = loop[k], &q = loop[(k + 1) % loop.size()];
-    const Vec3 c = cross(p, q);
-    const double s = norm(c);
-    if (s > 0) sum += std::atan2(s, dot(p, q)) * dot(unit_normal, c) / s;
-  }
-  return sum / (2 * std::numbers::pi);
 }
 
 /// By how much the ends of a question's rays are moved off their surfaces.

@@ -1,0 +1,154 @@
+#include "src/cli/link_frames.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "src/links/hierarchical_solution.h"
+#include "src/output/image.h"
+#include "src/output/mesh_faces.h"
+#include "src/output/vtk.h"
+#include "src/scene/scene_check.h"
+#include "src/solve/scene_solution.h"
+
+namespace exitance {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::map<std::string, LinkMethod> kMethods = {{"rebuild", LinkMethod::rebuild},
+                                                    {"direct", LinkMethod::direct},
+                                                    {"hvt", LinkMethod::hvt},
+                                                    {"hvt-peu", LinkMethod::hvt_peu}};
+
+class Frames {
+ public:
+  Frames(const DynamicScene& given, const LinkFrameOptions& options, const std::filesystem::path& folder)
+      : given_(given), options_(options), folder_(folder), links_(given.scene, options.links) {
+    moves_.resize(given.scene.objects.size());
+    for (const Event& event : given.events) moves_[event.edit.object] = 1;
+    name_ = std::ranges::find(kMethods, options.method, [](const auto& entry) { return entry.second; })->first;
+  }
+
+  LinkFrames follow() {
+    const std::vector<Event>& events = given_.events;
+    add(events.empty() ? 0 : std::min(0.0, events.front().time), {}, links_.build());
+    for (std::size_t next = 0; next < events.size() && !(options_.stop && options_.stop());) {
+      const double time = events[next].time;
+      std::vector<Edit> edits;
+      std::vector<std::string> names;
+      for (; next < events.size() && events[next].time == time; ++next) {
+        edits.push_back(events[next].edit);
+        names.push_back(
+            fmt::format("{} {}", name_of(edits.back().operation), given_.scene.objects[edits.back().object].name));
+      }
+      add(time, names, links_.update(edits, options_.method));
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void add(double time, const std::vector<std::string>& edits, const LinkUpdate& update) {
+    const std::vector<std::uint32_t> elements = links_.elements();
+    const std::span<const double> B = links_.radiosity().B();
+    std::optional<LinkError> error;
+    if (options_.references) {
+      const std::vector<double> reference = links_.converged();
+      error = link_error(links_.tree(), elements, links_.radiosity().bands(), reference, reference_before_, B);
+      reference_before_ = reference;
+    }
+    const SightWork& sight = update.work.sight;
+    const LinkCounts counts = links_.links().count(links_.tree(), moves_);
+    const std::vector<std::uint8_t> used = links_.nodes_in_use();
+    std::size_t patches = 0;
+    for (const Root& root : links_.tree().roots()) patches += root.present;
+    Json frame;
+    frame["frame"] = result_.frames.size();
+    frame["time"] = time;
+    frame["edits"] = edits;
+    frame["method"] = name_;
+    frame["seconds"] = update.seconds;
+    frame["links_updated"] = update.work.links_updated;
+    frame["links_affected"] = update.work.links_affected;
+    frame["skipped"] = update.work.skipped;
+    frame["refined"] = update.work.refined;
+    frame["unrefined"] = update.work.unrefined;
+    frame["form_factors"] = sight.form_factors;
+    frame["visibility_tests"] = sight.visibility_tests;
+    frame["shaft_tests"] = sight.shaft_tests;
+    frame["error"] = error ? Json(error->all) : Json(nullptr);
+    frame["error_worst_1_percent"] = error ? Json(error->worst_1_percent) : Json(nullptr);
+    frame["seconds_scene"] = update.seconds_scene;
+    frame["seconds_links"] = update.seconds_links;
+    frame["seconds_exchange"] = update.seconds_exchange;
+    // Summed over threads.
+    frame["cpu_seconds"] = {{"all", update.cpu_seconds},
+                            {"form_factors", sight.seconds_form_factors},
+                            {"visibility", sight.seconds_visibility},
+                            {"shafts", sight.seconds_shafts}};
+    frame["exchange_iterations"] = update.exchange.iterations;
+    frame["patches"] = patches;
+    frame["sub_patches"] = std::ranges::count(used, 1);
+    frame["elements"] = elements.size();
+    frame["links"] = {{"active", counts.active},   {"shadow", counts.shadow}, {"ghost", counts.ghost},
+                      {"E-E", counts.environment}, {"E-O", counts.mixed},     {"O-O", counts.dynamic},
+                      {"bytes", counts.bytes}};
+    frame["unit"] = given_.scene.unit;
+    if (options_.images) draw(time, elements);
+    result_.summary += fmt::format("frame {:3}  {:>9.4f} s  {:7} of {} links  error {}  of the 1 % {}  {}\n",
+                                   result_.frames.size(), update.seconds, update.work.links_updated, counts.links(),
+                                   error ? fmt::format("{:.3g}", error->all) : "-",
+                                   error ? fmt::format("{:.3g}", error->worst_1_percent) : "-", fmt::join(edits, ", "));
+    result_.frames.push_back(std::move(frame));
+  }
+
+  void draw(double time, const std::vector<std::uint32_t>& elements) const {
+    const PatchMesh mesh = mesh_of(links_);
+    const Faces faces = faces_of(mesh, links_.obstacles().soup());
+    const std::uint32_t bands = links_.radiosity().bands();
+    std::vector<double> B;
+    std::vector<std::uint8_t> emits, covered;
+    for (const std::uint32_t n : elements) {
+      const std::uint32_t root = links_.tree().node(n).root;
+      const auto E = links_.radiosity().E().subspan(std::size_t{root} * bands, bands);
+      const auto of_node = links_.radiosity().B().subspan(std::size_t{n} * bands, bands);
+      B.insert(B.end(), of_node.begin(), of_node.end());
+      emits.push_back(std::ranges::any_of(E, [](double value) { return value > 0; }));
+    }
+    const Camera camera = !given_.camera_path.empty() ? camera_at(given_.camera_path, time)
+                          : given_.scene.camera       ? *given_.scene.camera
+                                                      : default_camera(faces.points(), is_closed(given_.scene));
+    const std::string name = fmt::format("frame_{:03}", result_.frames.size());
+    write_png(folder_ / (name + ".png"), render(faces, {bands, B, emits, covered}, camera));
+    VtkArray exitance{"B", given_.scene.unit, {}, B};
+    if (bands == 3) exitance.components = {"R", "G", "B"};
+    for (std::uint32_t b = 0; bands != 1 && bands != 3 && b < bands; ++b)
+      exitance.components.push_back(fmt::format("band {}", b));
+    write_vtp(folder_ / (name + ".vtp"), faces, {&exitance, 1});
+  }
+
+  const DynamicScene& given_;
+  const LinkFrameOptions& options_;
+  std::filesystem::path folder_;
+  LinkedRadiosity links_;
+  std::vector<std::uint8_t> moves_;
+  std::string name_;
+  std::vector<double> reference_before_;
+  LinkFrames result_{Json::array(), {}};
+};
+
+}  // namespace
+
+std::optional<LinkMethod> link_method_named(const std::string& name) {
+  const auto found = kMethods.find(name);
+  return found == kMethods.end() ? std::nullopt : std::optional(found->second);
+}
+
+LinkFrames follow_links(const DynamicScene& given, const LinkFrameOptions& options,
+                        const std::filesystem::path& folder) {
+  return Frames(given, options, folder).follow();
+}
+
+}  // namespace exitance

@@ -1,0 +1,36 @@
+#pragma once
+// The frames of a scene's events by hierarchical links.
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "src/links/linked_radiosity.h"
+#include "src/scene/scene_file.h"
+
+namespace exitance {
+
+/// rebuild, direct, hvt, hvt-peu; none where there is none of that name.
+std::optional<LinkMethod> link_method_named(const std::string& name);
+
+struct LinkFrameOptions {
+  LinkOptions links;
+  LinkMethod method = LinkMethod::hvt;
+  bool references = true;      ///< whether errors are found
+  bool images = true;          ///< whether pictures and VTP files are written
+  std::function<bool()> stop;  ///< asked between frames
+};
+
+struct LinkFrames {
+  nlohmann::ordered_json frames;  ///< a list, as frames.json
+  std::string summary;            ///< a line a frame
+};
+
+/// Follows the scene through its events; frame 0 is built before the first. Writes frame_*.png and frame_*.vtp into the
+/// folder. Errors are eq. 7 of George et al. (1990) against the converged solution on the same links.
+LinkFrames follow_links(const DynamicScene& given, const LinkFrameOptions& options,
+                        const std::filesystem::path& folder);
+
+}  // namespace exitance

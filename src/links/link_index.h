@@ -1,0 +1,105 @@
+#pragma once
+// The Hierarchical Link Index: a flat record a link, found by its code (Feng et al., section 4 and Table 1).
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "src/links/patch_tree.h"
+#include "src/links/quad_code.h"
+
+namespace exitance {
+
+/// A link: light goes from its source to its destination.
+struct Link {
+  LinkCode code;                  ///< from the pair of whole patches to these nodes
+  std::uint32_t source = 0;       ///< node that emits
+  std::uint32_t destination = 0;  ///< node that gathers
+  double form_factor = 0;         ///< from destination to source as if nothing stood between
+  /// What of that is seen, 0 … 1; of a ghost 1, as it is not looked at.
+  double visibility = 0;
+  /// What it could transfer at most, B F in luminance [W/m²], as of the last exchange of energy; of a ghost the largest
+  /// of its descendants'.
+  double energy = 0;
+  /// How far it is to the next record of the same level or a higher one: 1 and the number of descendants.
+  std::uint32_t next = 1;
+  bool ghost = false;    ///< refined: its descendants carry the energy
+  bool open = false;     ///< nothing enters its shaft, nor those of its descendants
+  bool blocked = false;  ///< something alone blocks its shaft or that of a link that it descends from
+  bool stale = false;    ///< an update left it, and its descendants, as it was, though it may have changed
+
+  double transfer() const { return visibility * form_factor; }
+  bool shadow() const { return !ghost && visibility == 0; }
+};
+static_assert(sizeof(Link) <= 48);
+
+/// Links by what they are. A link is active, shadow (nothing of it is seen) or ghost (refined).
+struct LinkCounts {
+  std::uint64_t active = 0, shadow = 0, ghost = 0;
+  /// Active and shadow links between what does not move (E-E), from or to what does (E-O), and within that (O-O).
+  std::uint64_t environment = 0, mixed = 0, dynamic = 0;
+  std::uint64_t bytes = 0;  ///< of the records and of what finds them
+
+  std::uint64_t links() const { return active + shadow; }
+};
+
+/// Links of each receiving patch side by side, by emitting patch and then by code: descendants are contiguous, and any
+/// link is found in O(log n). No object is special: links between any objects are ranges of it, found the same way.
+class LinkIndex {
+ public:
+  /// roots: how many the tree has. Empty.
+  explicit LinkIndex(std::size_t roots = 0) : blocks_(roots) {}
+
+  /// Makes room for roots that the tree has got.
+  void grow(std::size_t roots) { blocks_.resize(roots); }
+  std::size_t roots() const { return blocks_.size(); }
+
+  /// All that a patch receives.
+  std::span<const Link> of_receiver(std::uint32_t receiver) const { return blocks_[receiver].links; }
+  std::span<Link> of_receiver(std::uint32_t receiver) { return blocks_[receiver].links; }
+
+  /// The link between two whole patches and all its descendants; empty where there is none.
+  std::span<const Link> between(std::uint32_t receiver, std::uint32_t source) const;
+
+  /// visit(source patch, its links), ascending, of all that a patch receives.
+  template <class Visit>
+  void for_each_source(std::uint32_t receiver, const Visit& visit) const {
+    const Block& block = blocks_[receiver];
+    for (std::size_t k = 0; k < block.pairs.size(); ++k) {
+      const std::size_t first = block.pairs[k].first;
+      const std::size_t last = k + 1 < block.pairs.size() ? block.pairs[k + 1].first : block.links.size();
+      visit(block.pairs[k].source, std::span(block.links).subspan(first, last - first));
+    }
+  }
+
+  /// A link by its code; null where there is none.
+  const Link* find(std::uint32_t receiver, std::uint32_t source, LinkCode code) const;
+
+  /// Puts `links`, in order and with all descendants, in place of those between two patches.
+  struct Replacement {
+    std::uint32_t source = 0;  ///< patch
+    std::vector<Link> links;
+  };
+  /// sources ascending, each once. Different receivers may be changed by different threads.
+  void replace(std::uint32_t receiver, std::span<const Replacement> replacements);
+
+  /// moves[object]: whether it is dynamic.
+  LinkCounts count(const PatchTree& tree, std::span<const std::uint8_t> moves) const;
+
+ private:
+  struct Pair {
+    std::uint32_t source = 0, first = 0;
+  };
+  struct Block {
+    std::vector<Link> links;
+    std::vector<Pair> pairs;  ///< ascending
+  };
+
+  std::pair<std::size_t, std::size_t> range(const Block& block, std::uint32_t source) const;
+
+  std::vector<Block> blocks_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,175 @@
+#include "src/links/link_sight.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "src/visibility/convex_loop.h"
+#include "src/visibility/exact_visibility.h"
+
+namespace exitance {
+namespace {
+
+class Lap {
+ public:
+  explicit Lap(double& seconds) : seconds_(seconds) {}
+  ~Lap() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Lap(const Lap&) = delete;
+  Lap& operator=(const Lap&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+Obstacles::Obstacles(const EditedScene& scene) : soup_(make_soup(scene.scene())), contacts_(soup_) {
+  const std::size_t facets = soup_.facets().size();
+  object_of_item_.assign(facets + soup_.shells().size(), kNone);
+  for (std::uint32_t object = 0; object < scene.scene().objects.size(); ++object) {
+    const EditedScene::Range range = scene.surfaces_of(object);
+    facets_.emplace_back(soup_.first_facet(range.first), soup_.first_facet(range.last));
+    std::fill(object_of_item_.begin() + facets_.back().first, object_of_item_.begin() + facets_.back().second, object);
+  }
+  for (std::size_t s = 0; s < soup_.shells().size(); ++s)
+    object_of_item_[facets + s] = object_of_item_[soup_.shells()[s].facets.front()];
+}
+
+std::vector<std::uint32_t> Obstacles::items_of(std::uint32_t object) const {
+  const auto facets = static_cast<std::uint32_t>(soup_.facets().size());
+  std::vector<std::uint32_t> items;
+  const auto convex = [&](std::uint32_t shell) { return shell != kNone && soup_.shells()[shell].convex; };
+  for (std::uint32_t f = facets_[object].first; f < facets_[object].second; ++f) {
+    if (!convex(soup_.facets()[f].shell)) items.push_back(f);
+  }
+  for (std::uint32_t s = 0; s < soup_.shells().size(); ++s) {
+    if (convex(s) && object_of_item_[facets + s] == object) items.push_back(facets + s);
+  }
+  return items;
+}
+
+SightWork& SightWork::operator+=(const SightWork& other) {
+  shaft_tests += other.shaft_tests;
+  visibility_tests += other.visibility_tests;
+  form_factors += other.form_factors;
+  seconds_shafts += other.seconds_shafts;
+  seconds_visibility += other.seconds_visibility;
+  seconds_form_factors += other.seconds_form_factors;
+  return *this;
+}
+
+LinkSight::LinkSight(const PatchTree& tree, const Obstacles& obstacles, unsigned per_edge)
+    : tree_(tree), obstacles_(obstacles), per_edge_(per_edge), shaft_(obstacles.soup()), view_(obstacles.soup()) {}
+
+/// Of the items, what enters the shaft as it is set.
+Sight LinkSight::select(std::span<const std::uint32_t> items) {
+  Sight sight;
+  sight.first = items_.size();
+  chosen_.clear();
+  for (const std::uint32_t item : items) {
+    const Shaft::Overlap overlap = shaft_.overlap(item);
+    if (overlap == Shaft::Overlap::outside) continue;
+    chosen_.push_back(item);
+    if (overlap == Shaft::Overlap::blocking) sight.state = Sight::State::blocked;
+  }
+  items_.insert(items_.end(), chosen_.begin(), chosen_.end());
+  sight.count = chosen_.size();
+  if (sight.count > 0 && sight.state == Sight::State::open) sight.state = Sight::State::partial;
+  return sight;
+}
+
+Sight LinkSight::between_roots(std::uint32_t receiver, std::uint32_t source) {
+  const Lap lap(work_.seconds_shafts);
+  ++work_.shaft_tests;
+  shaft_.reset(shaft_end(tree_.node(receiver)), shaft_end(tree_.node(source)));
+  const Shaft::Overlap overlap = shaft_.find_occluders(found_);
+  Sight sight;
+  sight.first = items_.size();
+  sight.count = found_.size();
+  sight.state = overlap == Shaft::Overlap::outside    ? Sight::State::open
+                : overlap == Shaft::Overlap::blocking ? Sight::State::blocked
+                                                      : Sight::State::partial;
+  items_.insert(items_.end(), found_.begin(), found_.end());
+  return sight;
+}
+
+Sight LinkSight::between_roots(std::uint32_t receiver, std::uint32_t source, std::span<const std::uint32_t> items) {
+  const Lap lap(work_.seconds_shafts);
+  ++work_.shaft_tests;
+  shaft_.reset(shaft_end(tree_.node(receiver)), shaft_end(tree_.node(source)));
+  return select(items);
+}
+
+Sight LinkSight::between(std::uint32_t receiver, std::uint32_t source, const Sight& parent) {
+  if (parent.state != Sight::State::partial) return {parent.state, items_.size(), 0};
+  const Lap lap(work_.seconds_shafts);
+  ++work_.shaft_tests;
+  shaft_.reset(shaft_end(tree_.node(receiver)), shaft_end(tree_.node(source)));
+  return select(items(parent));
+}
+
+/// Takes from the last sight what the one above it does not have.
+void LinkSight::keep_inherited(Sight& sight, const Sight& parent) {
+  if (parent.state != Sight::State::partial) {
+    items_.resize(sight.first);
+    sight = {parent.state, sight.first, 0};
+    return;
+  }
+  const auto of_parent = items(parent);
+  found_.clear();
+  for (const std::uint32_t item : items(sight)) {
+    if (std::ranges::binary_search(of_parent, item)) found_.push_back(item);
+  }
+  if (found_.size() == sight.count) return;
+  items_.resize(sight.first);
+  sight = select(found_);
+}
+
+Sight LinkSight::between_alone(std::uint32_t receiver, std::uint32_t source, const Sight& parent) {
+  Sight sight = between_roots(receiver, source);
+  keep_inherited(sight, parent);
+  return sight;
+}
+
+Sight LinkSight::between_alone(std::uint32_t receiver, std::uint32_t source, const Sight& parent,
+                               std::span<const std::uint32_t> items) {
+  Sight sight = between_roots(receiver, source, items);
+  keep_inherited(sight, parent);
+  return sight;
+}
+
+double LinkSight::form_factor(std::uint32_t receiver, std::uint32_t source) {
+  const Lap lap(work_.seconds_form_factors);
+  const Node &node = tree_.node(receiver), &of = tree_.node(source);
+  const Vec3 normal = normalized(obstacles_.soup().facets()[node.facet].plane.normal);
+  node_points(node, per_edge_, points_);
+  work_.form_factors += points_.size();
+  double sum = 0;
+  for (const NodePoint& p : points_) {
+    ConvexLoop loop;
+    for (const Vec3& v : of.loop()) loop.push_back(v - p.at);
+    // Counter-clockwise seen from the front: the point sees that side where the sum is negative.
+    sum += p.weight * std::max(0.0, -lambert(part_above(normal, loop), normal));
+  }
+  return sum;
+}
+
+double LinkSight::visible_form_factor(std::uint32_t receiver, std::uint32_t source, const Sight& sight) {
+  if (sight.state == Sight::State::blocked) return 0;
+  const Lap lap(work_.seconds_visibility);
+  const Node& node = tree_.node(receiver);
+  const Vec3 normal = obstacles_.soup().facets()[node.facet].plane.normal;
+  node_points(node, per_edge_, points_);
+  work_.visibility_tests += points_.size();
+  double sum = 0;
+  for (const NodePoint& p : points_) {
+    view_.look_from({p.at, normal, node.facet});
+    if (view_.covered() || obstacles_.contacts().touched(node.facet, p.at)) continue;
+    const PointFormFactor f = view_.form_factor(source_of(tree_.node(source)), items(sight), kPointTolerance);
+    if (f.side == Side::front) sum += p.weight * f.F;
+  }
+  return sum;
+}
+
+}  // namespace exitance

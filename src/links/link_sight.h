@@ -1,0 +1,107 @@
+#pragma once
+// What stands between the two nodes of a link, and what the one sees of the other.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "geometry/shaft.h"
+#include "geometry/viewpoint.h"
+#include "src/links/patch_tree.h"
+#include "src/visibility/contacts.h"
+
+namespace exitance {
+
+/// The obstacles of a scene as it is at one time, and whose they are.
+class Obstacles {
+ public:
+  explicit Obstacles(const EditedScene& scene);
+  Obstacles(const Obstacles&) = delete;  // contacts refer to the soup
+  Obstacles& operator=(const Obstacles&) = delete;
+
+  const PolygonSoup& soup() const { return soup_; }
+  const Contacts& contacts() const { return contacts_; }
+  std::uint32_t object_of_item(std::uint32_t item) const { return object_of_item_[item]; }
+  /// Items (of the soup's index; a facet of no convex shell, or such a shell) of an object, ascending.
+  std::vector<std::uint32_t> items_of(std::uint32_t object) const;
+  /// The object's facets, first … last − 1.
+  std::pair<std::uint32_t, std::uint32_t> facets_of(std::uint32_t object) const { return facets_[object]; }
+
+ private:
+  PolygonSoup soup_;
+  Contacts contacts_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> facets_;  ///< by object
+  std::vector<std::uint32_t> object_of_item_;
+};
+
+/// What enters the shaft of a link, as far as it was asked about.
+struct Sight {
+  enum class State : std::uint8_t {
+    open,     ///< nothing
+    partial,  ///< the items
+    blocked   ///< something that alone blocks the shaft of the link or of one that it descends from
+  };
+  State state = State::open;
+  std::size_t first = 0, count = 0;  ///< items, in the LinkSight's memory
+};
+
+/// What was done, and what it took.
+struct SightWork {
+  std::uint64_t shaft_tests = 0;       ///< links whose shaft was made
+  std::uint64_t visibility_tests = 0;  ///< points from which it was looked past items
+  std::uint64_t form_factors = 0;      ///< points from which an unobstructed form factor was computed
+  double seconds_shafts = 0, seconds_visibility = 0, seconds_form_factors = 0;  ///< summed over threads
+
+  SightWork& operator+=(const SightWork& other);
+};
+
+/// Answers for one thread; holds scratch memory.
+///
+/// The shaft of a link lies within that of the link it descends from. So what enters it is sought among what enters
+/// there, from whole patches downwards; below an open link everything is open, and below a blocked one blocked. What
+/// rounding of the corners of sub-patches could change in this is defined away, and all answers depend on the two
+/// nodes and the scene only, whatever was asked before.
+class LinkSight {
+ public:
+  /// per_edge: squared, the points from which a node looks (node_points).
+  LinkSight(const PatchTree& tree, const Obstacles& obstacles, unsigned per_edge);
+
+  /// Of whole patches, among all items or among some; then of links that descend from them. The memory of items is a
+  /// stack: forget them in the opposite order.
+  Sight between_roots(std::uint32_t receiver, std::uint32_t source);
+  Sight between_roots(std::uint32_t receiver, std::uint32_t source, std::span<const std::uint32_t> items);
+  Sight between(std::uint32_t receiver, std::uint32_t source, const Sight& parent);
+  /// The same answers, but nothing is inherited: the link's own shaft is sought in the index of the scene, or among
+  /// `items`. What rounding lets enter a descendant's shaft but not that of the link above it does not count here,
+  /// either.
+  Sight between_alone(std::uint32_t receiver, std::uint32_t source, const Sight& parent);
+  Sight between_alone(std::uint32_t receiver, std::uint32_t source, const Sight& parent,
+                      std::span<const std::uint32_t> items);
+  void forget(const Sight& sight) { items_.resize(sight.first); }
+  std::span<const std::uint32_t> items(const Sight& sight) const { return {items_.data() + sight.first, sight.count}; }
+
+  /// Mean over the receiver's points of the form factor to the source as if nothing stood between.
+  double form_factor(std::uint32_t receiver, std::uint32_t source);
+  /// The same to what is seen of it. REQUIRES: sight is theirs, among all items, and open only where form_factor is
+  /// not asked instead.
+  double visible_form_factor(std::uint32_t receiver, std::uint32_t source, const Sight& sight);
+
+  const SightWork& work() const { return work_; }
+
+ private:
+  Sight select(std::span<const std::uint32_t> items);
+  void keep_inherited(Sight& sight, const Sight& parent);
+
+  const PatchTree& tree_;
+  const Obstacles& obstacles_;
+  unsigned per_edge_;
+  Shaft shaft_;
+  Viewpoint view_;
+  std::vector<std::uint32_t> items_, found_, chosen_;
+  std::uint32_t points_of_ = kNone;
+  std::vector<NodePoint> points_;
+  SightWork work_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,226 @@
+#include "src/links/patch_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "geometry/gauss_rule.h"
+#include "src/scene/input_error.h"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t kMostNodes = std::size_t{1} << 31;
+/// Of a piece's area: what rounding leaves of a fan's flat quadrilateral.
+constexpr double kFlat = 0x1p-40;
+/// Relative change of a root's area up to which its nodes remain as they are.
+constexpr double kSameArea = 1e-6;
+
+double area_of(const Node& node) {
+  Vec3 sum;
+  for (std::size_t k = 1; k + 1 < node.corners; ++k)
+    sum = sum + cross(node.corner[k] - node.corner[0], node.corner[k + 1] - node.corner[0]);
+  return 0.5 * norm(sum);
+}
+
+Vec3 middle(const Vec3& a, const Vec3& b) {
+  return 0.5 * (a + b);
+}
+
+/// The corners of child k.
+std::array<Vec3, 4> corners_of_child(const Node& parent, unsigned k) {
+  const auto& c = parent.corner;
+  if (parent.corners == 3) {
+    const Vec3 ab = middle(c[0], c[1]), bc = middle(c[1], c[2]), ca = middle(c[2], c[0]);
+    switch (k) {
+      case 0:
+        return {c[0], ab, ca, {}};
+      case 1:
+        return {ab, c[1], bc, {}};
+      case 2:
+        return {ca, bc, c[2], {}};
+      default:
+        return {bc, ca, ab, {}};
+    }
+  }
+  const Vec3 centre = middle(middle(c[0], c[2]), middle(c[1], c[3]));
+  std::array<Vec3, 4> of_child;
+  for (unsigned i = 0; i < 4; ++i) {  // corner i of child k: beside the parent's corner k, the same way round
+    const unsigned away = (i + 4 - k) % 4;
+    of_child[i] = away == 0   ? c[k]
+                  : away == 1 ? middle(c[k], c[(k + 1) % 4])
+                  : away == 2 ? centre
+                              : middle(c[(k + 3) % 4], c[k]);
+  }
+  return of_child;
+}
+
+}  // namespace
+
+PatchTree::PatchTree(const EditedScene& scene, const PolygonSoup& soup, const TreeOptions& options)
+    : options_(options) {
+  if (!(options.smallest_area > 0)) throw std::invalid_argument("the smallest area of a node must be positive");
+  options_.mesh.elements_per_edge = 1;
+  const std::size_t objects = scene.scene().objects.size();
+  root_first_.resize(objects);
+  root_count_.resize(objects);
+  facet_first_.resize(objects);
+  for (std::uint32_t object = 0; object < objects; ++object) {
+    std::vector<std::uint32_t> surfaces;
+    const std::vector<Node> nodes = root_nodes(scene, soup, object, surfaces);
+    append(nodes, surfaces, object);
+    facet_first_[object] = soup.first_facet(scene.surfaces_of(object).first);
+  }
+}
+
+/// The roots of an object as it stands, and the surface of each within the object.
+std::vector<Node> PatchTree::root_nodes(const EditedScene& scene, const PolygonSoup& soup, std::uint32_t object,
+                                        std::vector<std::uint32_t>& surfaces) const {
+  const EditedScene::Range range = scene.surfaces_of(object);
+  const PatchMesh mesh = make_patch_mesh(scene.scene(), soup, options_.mesh, range.first, range.last);
+  std::vector<Node> roots;
+  for (const Patch& patch : mesh.patches) {
+    for (const PatchPiece& piece : mesh.pieces_of(patch)) {
+      std::vector<Vec3> loop(mesh.loop(piece).begin(), mesh.loop(piece).end());
+      if (loop.empty()) {
+        for (const Corner& c : soup.corners(soup.facets()[piece.facet])) loop.push_back(c.at);
+      }
+      for (std::size_t k = 1; k + 1 < loop.size(); k += 2) {
+        Node node;
+        node.corners = k + 2 < loop.size() ? 4 : 3;
+        node.corner = {loop[0], loop[k], loop[k + 1], node.corners == 4 ? loop[k + 2] : Vec3{}};
+        node.whole = piece.loop_count == 0 && loop.size() == node.corners;
+        node.facet = piece.facet;
+        node.area = area_of(node);
+        if (node.area <= kFlat * piece.area) continue;
+        roots.push_back(node);
+        surfaces.push_back(patch.surface - range.first);
+      }
+    }
+  }
+  return roots;
+}
+
+void PatchTree::append(const std::vector<Node>& root_nodes, const std::vector<std::uint32_t>& surfaces,
+                       std::uint32_t object) {
+  root_first_[object] = static_cast<std::uint32_t>(roots_.size());
+  root_count_[object] = static_cast<std::uint32_t>(root_nodes.size());
+  for (std::size_t r = 0; r < root_nodes.size(); ++r) {
+    Root root;
+    root.node_first = static_cast<std::uint32_t>(nodes_.size());
+    root.object = object;
+    root.surface = surfaces[r];
+    root.present = true;
+    nodes_.push_back(root_nodes[r]);
+    nodes_.back().root = static_cast<std::uint32_t>(roots_.size());
+    for (std::size_t n = root.node_first; n < nodes_.size(); ++n) {
+      if (nodes_[n].area < 4 * options_.smallest_area) continue;
+      if (nodes_.size() + 4 > kMostNodes)
+        throw LimitError("the smallest area asks for more than 2^31 sub-patches; choose a larger one");
+      Node child = nodes_[n];
+      nodes_[n].first_child = static_cast<std::uint32_t>(nodes_.size());
+      child.parent = static_cast<std::uint32_t>(n);
+      child.whole = false;
+      ++child.level;
+      depth_ = std::max<unsigned>(depth_, child.level);
+      nodes_.insert(nodes_.end(), 4, child);
+      place_children(static_cast<std::uint32_t>(n));
+    }
+    root.node_count = static_cast<std::uint32_t>(nodes_.size()) - root.node_first;
+    roots_.push_back(root);
+  }
+}
+
+void PatchTree::place_children(std::uint32_t node) {
+  for (unsigned k = 0; k < 4; ++k) {
+    Node& child = nodes_[nodes_[node].first_child + k];
+    child.corner = corners_of_child(nodes_[node], k);
+    child.area = area_of(child);
+  }
+}
+
+/// Brings the numbers of facets from those of the soup before to those of the soup as it is.
+void PatchTree::number_facets(const EditedScene& scene, const PolygonSoup& soup) {
+  for (std::uint32_t object = 0; object < facet_first_.size(); ++object) {
+    const std::uint32_t first = soup.first_facet(scene.surfaces_of(object).first);
+    const std::uint32_t offset = first - std::exchange(facet_first_[object], first);
+    if (offset == 0) continue;
+    for (std::uint32_t r = root_first_[object]; r < root_first_[object] + root_count_[object]; ++r) {
+      for (std::uint32_t k = 0; k < roots_[r].node_count; ++k) nodes_[roots_[r].node_first + k].facet += offset;
+    }
+  }
+}
+
+void PatchTree::change_geometry(const EditedScene& scene, const PolygonSoup& soup, std::uint32_t object) {
+  const auto roots = std::span(roots_).subspan(root_first_[object], root_count_[object]);
+  if (!scene.is_present(object)) {
+    for (Root& root : roots) root.present = false;
+    number_facets(scene, soup);
+    return;
+  }
+  std::vector<std::uint32_t> surfaces;
+  const std::vector<Node> placed = root_nodes(scene, soup, object, surfaces);
+  bool same = placed.size() == roots.size();
+  for (std::size_t r = 0; same && r < placed.size(); ++r) {
+    const Node& old = nodes_[roots[r].node_first];
+    same = placed[r].corners == old.corners && surfaces[r] == roots[r].surface &&
+           std::fabs(placed[r].area - old.area) <= kSameArea * old.area;
+  }
+  if (!same) {
+    for (Root& root : roots) root.present = false;
+    append(placed, surfaces, object);
+  } else {
+    for (std::size_t r = 0; r < placed.size(); ++r) {
+      roots[r].present = true;
+      Node& node = nodes_[roots[r].node_first];
+      node.corner = placed[r].corner;
+      node.area = placed[r].area;
+      for (std::uint32_t k = 0; k < roots[r].node_count; ++k) {
+        nodes_[roots[r].node_first + k].facet = placed[r].facet;
+        if (nodes_[roots[r].node_first + k].has_children()) place_children(roots[r].node_first + k);
+      }
+    }
+  }
+  facet_first_[object] = soup.first_facet(scene.surfaces_of(object).first);
+  number_facets(scene, soup);
+}
+
+void node_points(const Node& node, unsigned per_edge, std::vector<NodePoint>& points) {
+  const GaussRule<double>& rule = gauss_rule<double>(static_cast<int>(per_edge));
+  const auto& c = node.corner;
+  const Vec3& last = node.corners == 4 ? c[3] : c[2];
+  points.clear();
+  double sum = 0;
+  for (std::size_t i = 0; i < per_edge; ++i) {
+    for (std::size_t j = 0; j < per_edge; ++j) {
+      const double u = 0.5 * (1 + rule.node[i]), v = 0.5 * (1 + rule.node[j]);
+      const Vec3 low = (1 - u) * c[0] + u * c[1], high = (1 - u) * last + u * c[2];
+      const Vec3 along = (1 - v) * (c[1] - c[0]) + v * (c[2] - last), across = high - low;
+      points.push_back({(1 - v) * low + v * high, rule.weight[i] * rule.weight[j] * norm(cross(along, across))});
+      sum += points.back().weight;
+    }
+  }
+  for (NodePoint& p : points) p.weight /= sum;
+}
+
+bool face_each_other(const Node& a, const Node& b, const PolygonSoup& soup) {
+  const double least = 0x1p-40 * soup.extent();
+  const auto some_in_front = [&](const Node& node, const Node& of) {
+    const Plane& plane = soup.facets()[of.facet].plane;
+    const double length = norm(plane.normal);
+    return std::ranges::any_of(node.loop(),
+                               [&](const Vec3& v) { return dot(plane.normal, v - plane.origin) > least * length; });
+  };
+  return some_in_front(a, b) && some_in_front(b, a);
+}
+
+ShaftEnd shaft_end(const Node& node) {
+  return {node.facet, node.whole ? std::span<const Vec3>() : node.loop()};
+}
+
+Source source_of(const Node& node) {
+  return {node.facet, node.whole ? std::span<const Vec3>() : node.loop()};
+}
+
+}  // namespace exitance

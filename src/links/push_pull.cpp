@@ -1,0 +1,353 @@
+#include "src/links/push_pull.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "src/solve/radiosity_system.h"
+
+namespace exitance {
+namespace {
+
+/// Patches with this share of the most unshot energy shoot together.
+constexpr double kShootTogether = 0.1;
+/// Of the bound: when a sweep adds little enough to w, and more than what rounding does to it, relative.
+constexpr double kReflected = 0.1, kSlack = 1e-12;
+
+template <class Work>
+void for_each_root(const PatchTree& tree, const Work& work) {
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(tree.roots().size())),
+                    [&](const auto& range) {
+                      for (std::uint32_t r = range.begin(); r < range.end(); ++r) {
+                        if (tree.root(r).present) work(r);
+                      }
+                    });
+}
+
+}  // namespace
+
+double judged_form_factor(const Node& receiver, const Node& source, double form_factor) {
+  if (form_factor > 0) return form_factor;
+  const auto middle = [](const Node& node) {
+    Vec3 sum;
+    for (const Vec3& v : node.loop()) sum = sum + v;
+    return (1.0 / node.corners) * sum;
+  };
+  const Vec3 d = middle(source) - middle(receiver);
+  return std::min(1.0, source.area / (std::numbers::pi * dot(d, d)));
+}
+
+NodeRadiosity::NodeRadiosity(const PatchTree& tree, const EditedScene& scene)
+    : tree_(tree), bands_(scene.scene().bands), weights_(luminance_weights(bands_)) {
+  fit_arrays();
+  for (std::uint32_t object = 0; object < scene.scene().objects.size(); ++object) set_materials(scene, object);
+  start_over();
+}
+
+void NodeRadiosity::fit_arrays() {
+  const std::size_t nodes = tree_.nodes().size(), roots = tree_.roots().size();
+  for (auto* values : {&B_, &next_, &H_, &received_, &unshot_}) values->resize(nodes * bands_);
+  for (auto* values : {&Y_, &row_sum_, &w_, &next_w_}) values->resize(nodes);
+  for (auto* values : {&rho_, &E_}) values->resize(roots * bands_);
+  has_received_.resize(roots);
+  there_.resize(roots);
+}
+
+void NodeRadiosity::set_materials(const EditedScene& scene, std::uint32_t object) {
+  const std::uint32_t first = scene.surfaces_of(object).first;
+  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
+    const Root& root = tree_.root(r);
+    if (root.object != object || !root.present) continue;
+    const Material& material = scene.scene().materials[scene.scene().surfaces[first + root.surface].material];
+    std::ranges::copy(material.rho, rho_.begin() + std::ptrdiff_t{r} * bands_);
+    std::ranges::copy(material.E, E_.begin() + std::ptrdiff_t{r} * bands_);
+  }
+}
+
+void NodeRadiosity::start(std::uint32_t r) {
+  const Root& root = tree_.root(r);
+  for (std::size_t n = root.node_first; n < std::size_t{root.node_first} + root.node_count; ++n) {
+    for (std::uint32_t b = 0; b < bands_; ++b) {
+      B_[n * bands_ + b] = root.present ? E_[std::size_t{r} * bands_ + b] : 0;
+      H_[n * bands_ + b] = received_[n * bands_ + b] = unshot_[n * bands_ + b] = 0;
+    }
+  }
+  find_luminance(r);
+}
+
+void NodeRadiosity::start_over() {
+  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
+    there_[r] = tree_.root(r).present;
+    start(r);
+  }
+}
+
+void NodeRadiosity::change_geometry(const EditedScene& scene, std::uint32_t object) {
+  fit_arrays();
+  set_materials(scene, object);
+  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
+    if (tree_.root(r).present == (there_[r] != 0)) continue;
+    there_[r] = tree_.root(r).present;
+    start(r);
+  }
+}
+
+void NodeRadiosity::change_materials(const EditedScene& scene, std::uint32_t object) {
+  set_materials(scene, object);
+  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
+    const Root& root = tree_.root(r);
+    if (root.object != object || !root.present) continue;
+    for (std::uint32_t n = root.node_first; n < root.node_first + root.node_count; ++n) {
+      if (tree_.node(n).has_children()) continue;
+      for (std::uint32_t b = 0; b < bands_; ++b) {
+        const std::size_t i = std::size_t{n} * bands_ + b, of_root = std::size_t{r} * bands_ + b;
+        const double B = E_[of_root] + rho_[of_root] * H_[i];
+        unshot_[i] += B - B_[i];
+        B_[i] = B;
+      }
+    }
+    pull(r, B_, bands_);
+    pull(r, unshot_, bands_);
+    find_luminance(r);
+  }
+}
+
+/// Means over children, from the leaves up.
+void NodeRadiosity::pull(std::uint32_t r, std::vector<double>& values, std::size_t bands) {
+  const Root& root = tree_.root(r);
+  for (std::size_t n = std::size_t{root.node_first} + root.node_count; n-- > root.node_first;) {
+    const Node& node = tree_.nodes()[n];
+    if (!node.has_children()) continue;
+    double area = 0;
+    for (std::uint32_t k = 0; k < 4; ++k) area += tree_.node(node.first_child + k).area;
+    for (std::size_t b = 0; b < bands; ++b) {
+      double sum = 0;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t child = node.first_child + k;
+        sum += tree_.nodes()[child].area * values[child * bands + b];
+      }
+      values[n * bands + b] = sum / area;
+    }
+  }
+}
+
+void NodeRadiosity::find_luminance(std::uint32_t r) {
+  const Root& root = tree_.root(r);
+  for (std::size_t n = root.node_first; n < std::size_t{root.node_first} + root.node_count; ++n) {
+    Y_[n] = 0;
+    for (std::uint32_t b = 0; b < bands_; ++b) Y_[n] += weights_[b] * B_[n * bands_ + b];
+  }
+}
+
+LinkExchange NodeRadiosity::gather(const LinkIndex& links, double tolerance, std::uint64_t most) {
+  struct OfRoot {
+    std::vector<double> change, size;  ///< largest of each band
+    double reflected = 0, w = 0;       ///< largest of what a sweep adds to w, and of w
+  };
+  std::vector<OfRoot> of_root(tree_.roots().size(), {std::vector<double>(bands_), std::vector<double>(bands_), 0, 0});
+  std::ranges::fill(next_, 0);
+  std::ranges::fill(next_w_, 0);
+  for (const Root& root : tree_.roots())
+    std::fill_n(w_.begin() + root.node_first, root.node_count, root.present ? 1.0 : 0.0);
+  bool bounding = true;  // whether w is still sought
+
+  const auto sweep = [&](std::uint32_t r) {
+    const Root& root = tree_.root(r);
+    const std::size_t first = root.node_first, count = root.node_count, width = bands_ + 2;
+    const auto rho = std::span(rho_).subspan(std::size_t{r} * bands_, bands_);
+    const double largest_rho = *std::ranges::max_element(rho);
+    // Sums keep eleven more bits, so that what they lose does not count.
+    thread_local std::vector<long double> sums;
+    sums.assign(count * width, 0);
+    for (const Link& link : links.of_receiver(r)) {
+      if (link.ghost) continue;
+      const double F = link.transfer();
+      if (F == 0) continue;
+      long double* sum = sums.data() + (link.destination - first) * width;
+      const double* B = B_.data() + std::size_t{link.source} * bands_;
+      for (std::uint32_t b = 0; b < bands_; ++b) sum[b] += static_cast<long double>(F) * B[b];
+      sum[bands_] += F;
+      if (bounding) sum[bands_ + 1] += static_cast<long double>(F) * w_[link.source];
+    }
+    OfRoot& found = of_root[r];
+    std::ranges::fill(found.change, 0);
+    std::ranges::fill(found.size, 0);
+    if (bounding) found.reflected = found.w = 0;
+    for (std::size_t n = first; n < first + count; ++n) {
+      const Node& node = tree_.nodes()[n];
+      const long double* sum = sums.data() + (n - first) * width;
+      for (std::size_t k = 0; node.has_children() && k < 4; ++k) {
+        for (std::size_t b = 0; b < width; ++b) sums[(node.first_child + k - first) * width + b] += sum[b];
+      }
+      row_sum_[n] = static_cast<double>(sum[bands_]);
+      if (bounding && !node.has_children()) {
+        next_w_[n] = 1 + largest_rho * static_cast<double>(sum[bands_ + 1]);
+        found.reflected = std::max(found.reflected, next_w_[n] - w_[n]);
+        found.w = std::max(found.w, w_[n]);
+      }
+      for (std::size_t b = 0; b < bands_; ++b) {
+        const std::size_t i = n * bands_ + b;
+        H_[i] = static_cast<double>(sum[b]);
+        if (node.has_children()) continue;
+        next_[i] = E_[std::size_t{r} * bands_ + b] + rho[b] * H_[i];
+        found.change[b] = std::max(found.change[b], std::fabs(next_[i] - B_[i]));
+        found.size[b] = std::max(found.size[b], std::fabs(next_[i]));
+      }
+    }
+    pull(r, next_, bands_);
+    if (bounding) pull(r, next_w_, 1);
+  };
+
+  LinkExchange result;
+  result.factor = std::numeric_limits<double>::infinity();
+  double best = result.factor;
+  while (result.iterations < most) {
+    for_each_root(tree_, sweep);
+    ++result.iterations;
+    std::swap(B_, next_);
+    double reflected = 0, w = 0;
+    for (std::uint32_t r = 0; r < of_root.size(); ++r) {
+      if (!tree_.root(r).present) continue;
+      reflected = std::max(reflected, of_root[r].reflected);
+      w = std::max(w, of_root[r].w);
+    }
+    reflected += kSlack * w;
+    if (bounding && reflected < 1) result.factor = w * (1 + kSlack) / (1 - reflected);
+    bounding = bounding && reflected > kReflected;
+    if (bounding) std::swap(w_, next_w_);
+    result.residual = result.error_bound = 0;
+    for (std::uint32_t b = 0; b < bands_; ++b) {
+      double change = 0, size = 0;
+      for (std::uint32_t r = 0; r < of_root.size(); ++r) {
+        if (!tree_.root(r).present) continue;
+        change = std::max(change, of_root[r].change[b]);
+        size = std::max(size, of_root[r].size[b]);
+      }
+      if (size == 0) continue;
+      result.residual = std::max(result.residual, change / size);
+      result.error_bound = std::max(result.error_bound, (change / size + 8 * kRoundoff) * result.factor);
+    }
+    result.converged = result.error_bound <= tolerance;
+    if (result.converged || (result.residual <= 16 * kRoundoff && result.residual >= best)) break;
+    best = std::min(best, result.residual);
+  }
+  for_each_root(tree_, [&](std::uint32_t r) { find_luminance(r); });
+  std::ranges::fill(unshot_, 0);
+  std::ranges::fill(received_, 0);
+  std::ranges::fill(has_received_, 0);
+  return result;
+}
+
+void NodeRadiosity::receive(std::uint32_t node, double transfer, std::uint32_t source) {
+  has_received_[tree_.node(node).root] = 1;
+  for (std::uint32_t b = 0; b < bands_; ++b) {
+    // What is unshot will come by the link as it is now.
+    const std::size_t of_source = std::size_t{source} * bands_ + b;
+    received_[std::size_t{node} * bands_ + b] += transfer * (B_[of_source] - unshot_[of_source]);
+  }
+}
+
+std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::uint64_t most) {
+  const std::size_t roots = tree_.roots().size();
+  std::vector<double> energy(roots), unshot(roots);
+  std::vector<std::uint8_t> shoots(roots);
+  const auto measure = [&](std::uint32_t r) {
+    const Node& node = tree_.node(tree_.root(r).node_first);
+    energy[r] = node.area * Y_[tree_.root(r).node_first];
+    double sum = 0;  // of magnitudes: what leaves receive may cancel in the mean
+    for (std::size_t n = tree_.root(r).node_first, last = n + tree_.root(r).node_count; n < last; ++n) {
+      if (tree_.nodes()[n].has_children()) continue;
+      for (std::uint32_t b = 0; b < bands_; ++b)
+        sum += tree_.nodes()[n].area * weights_[b] * std::fabs(unshot_[n * bands_ + b]);
+    }
+    unshot[r] = sum;
+  };
+  const auto absorb = [&](std::uint32_t r) {
+    if (has_received_[r] == 0) return;
+    has_received_[r] = 0;
+    const Root& root = tree_.root(r);
+    for (std::size_t n = root.node_first, last = n + root.node_count; n < last; ++n) {
+      const Node& node = tree_.nodes()[n];
+      for (std::uint32_t b = 0; b < bands_; ++b) {
+        const std::size_t i = n * bands_ + b;
+        const double dH = std::exchange(received_[i], 0);
+        H_[i] += dH;
+        if (node.has_children()) {
+          for (std::size_t k = 0; k < 4; ++k) received_[(node.first_child + k) * bands_ + b] += dH;
+        } else {
+          const double dB = rho_[std::size_t{r} * bands_ + b] * dH;
+          B_[i] += dB;
+          unshot_[i] += dB;
+        }
+      }
+    }
+    pull(r, B_, bands_);
+    pull(r, unshot_, bands_);
+    find_luminance(r);
+    measure(r);
+  };
+
+  std::ranges::fill(energy, 0);
+  for_each_root(tree_, [&](std::uint32_t r) {
+    measure(r);
+    absorb(r);
+  });
+  for (std::uint64_t round = 0; round < most; ++round) {
+    double all = 0, left = 0, largest = 0;
+    for (std::uint32_t r = 0; r < roots; ++r) {
+      if (!tree_.root(r).present) continue;
+      all += energy[r];
+      left += unshot[r];
+      largest = std::max(largest, unshot[r]);
+    }
+    if (left <= share * all) return round;
+    for (std::uint32_t r = 0; r < roots; ++r)
+      shoots[r] = tree_.root(r).present && unshot[r] > 0 && unshot[r] >= kShootTogether * largest;
+    for_each_root(tree_, [&](std::uint32_t r) {
+      links.for_each_source(r, [&](std::uint32_t source, std::span<const Link> of_source) {
+        if (shoots[source] == 0) return;
+        for (const Link& link : of_source) {
+          if (link.ghost || link.visibility == 0) continue;
+          const double F = link.transfer();
+          for (std::uint32_t b = 0; b < bands_; ++b)
+            received_[std::size_t{link.destination} * bands_ + b] += F * unshot_[std::size_t{link.source} * bands_ + b];
+          has_received_[r] = 1;
+        }
+      });
+    });
+    for_each_root(tree_, [&](std::uint32_t r) {
+      if (shoots[r] != 0) {
+        const Root& root = tree_.root(r);
+        std::fill_n(unshot_.begin() + std::ptrdiff_t{root.node_first} * bands_, std::size_t{root.node_count} * bands_,
+                    0.0);
+        unshot[r] = 0;
+      }
+      absorb(r);
+    });
+  }
+  return most;
+}
+
+void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance) {
+  for_each_root(tree, [&](std::uint32_t r) {
+    const std::span<Link> of_receiver = links.of_receiver(r);
+    for (std::size_t i = of_receiver.size(); i-- > 0;) {
+      Link& link = of_receiver[i];
+      if (!link.ghost) {
+        link.energy = luminance[link.source] *
+                      judged_form_factor(tree.node(link.destination), tree.node(link.source), link.form_factor);
+        continue;
+      }
+      link.energy = 0;
+      for (std::size_t k = i + 1; k < i + link.next; k += of_receiver[k].next)
+        link.energy = std::max(link.energy, of_receiver[k].energy);
+    }
+  });
+}
+
+}  // namespace exitance

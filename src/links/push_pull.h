@@ -1,0 +1,91 @@
+#pragma once
+// Radiosity of the nodes of quadtrees: what links bring is pushed down to the leaves and pulled up as means (Hanrahan,
+// Salzman and Aupperle, "A rapid hierarchical radiosity algorithm", SIGGRAPH 1991).
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "src/links/link_index.h"
+#include "src/links/patch_tree.h"
+#include "src/scene/scene.h"
+
+namespace exitance {
+
+/// How far a solution over links is from the one that they have. All are relative to max B, of the worst band.
+struct LinkExchange {
+  std::uint64_t iterations = 0;  ///< sweeps
+  double residual = 0;           ///< what the last sweep changed
+  /// Proven, rounding included: ‖B − B*‖∞ ≤ ‖r‖∞ max w / (1 − d), r what a sweep changes, for any w > 0 with
+  /// w − ρ F w ≥ 1 − d > 0. Here w is 1 and its first reflections, by the largest ρ of each patch. Row sums of ρ F may
+  /// exceed 1 somewhere, as those of few points do in narrow gaps.
+  double error_bound = 0;
+  bool converged = false;
+  double factor = 0;  ///< of the bound: max w / (1 − d)
+};
+
+/// B [W/m²] of every node and band at [node * bands + band]; of a leaf E + ρ H with H the sum of what its own links and
+/// those of the nodes above it bring; of others the mean of the leaves, weighted by area. 0 where nothing is there.
+class NodeRadiosity {
+ public:
+  NodeRadiosity(const PatchTree& tree, const EditedScene& scene);
+
+  std::uint32_t bands() const { return bands_; }
+  std::span<const double> B() const { return B_; }
+  /// By node.
+  std::span<const double> luminance() const { return Y_; }
+  /// By root and band.
+  std::span<const double> rho() const { return rho_; }
+  std::span<const double> E() const { return E_; }
+
+  /// Every node gets its E: nothing has been exchanged.
+  void start_over();
+
+  /// After an edit of the geometry of an object: nodes that are new, or there again, get their E.
+  void change_geometry(const EditedScene& scene, std::uint32_t object);
+  /// Reflectances and emissions of an object are now those of the scene. B becomes E' + ρ' H with H as it is; what that
+  /// changes remains to be shot.
+  void change_materials(const EditedScene& scene, std::uint32_t object);
+
+  /// Sweeps over all links, each of which gathers at all patches at once (Jacobi), until the error bound is within the
+  /// tolerance, or rounding, or `most` sweeps end it. In parallel; the same bits for any number of threads.
+  LinkExchange gather(const LinkIndex& links, double tolerance, std::uint64_t most = 10'000);
+
+  /// [W/m²] what a link that changed brings more than before; to be pushed. Different receiving roots: any threads.
+  void receive(std::uint32_t node, double transfer, std::uint32_t source);
+  /// Pushes what was received and shoots it on, the patches with the most unshot energy (A |ΔB|, luminance) first: in
+  /// rounds of those that have a tenth of the most, until no more than `share` of the energy of all patches is left or
+  /// `most` rounds are done. Returns the rounds.
+  std::uint64_t shoot(const LinkIndex& links, double share, std::uint64_t most = 10'000);
+
+  /// H [W/m²] of a leaf, each band, and Σ F over its links and those above it: as of the last sweep.
+  std::span<const double> leaf_H(std::uint32_t node) const { return {H_.data() + std::size_t{node} * bands_, bands_}; }
+  double row_sum(std::uint32_t node) const { return row_sum_[node]; }
+
+ private:
+  void fit_arrays();
+  void set_materials(const EditedScene& scene, std::uint32_t object);
+  void start(std::uint32_t root);
+  void pull(std::uint32_t root, std::vector<double>& values, std::size_t bands);
+  void find_luminance(std::uint32_t root);
+
+  const PatchTree& tree_;
+  std::uint32_t bands_;
+  std::vector<double> weights_;
+  std::vector<double> rho_, E_;                     ///< by root and band
+  std::vector<double> B_, next_, H_;                ///< by node and band
+  std::vector<double> Y_, row_sum_;                 ///< by node
+  std::vector<double> w_, next_w_;                  ///< by node, of the error bound
+  std::vector<double> received_, unshot_;           ///< by node and band
+  std::vector<std::uint8_t> has_received_, there_;  ///< by root
+};
+
+/// Sets the energy of every link, B F of its source.
+void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance);
+
+/// Form factor by which a link's energy is judged: form_factor itself; where no point of the receiver lies in front of
+/// the source, but some of it does, what a small source at the distance of the nodes' middles would have.
+double judged_form_factor(const Node& receiver, const Node& source, double form_factor);
+
+}  // namespace exitance
