@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/geometry/visibility_oracle.h"
+#include "src/stress/visibility_oracle.h"
 
 namespace exitance {
 namespace {
@@ -184,7 +184,7 @@ TEST(Viewpoint, AValueThatItsErrorHidesIsFoundByMoreDigits) {
     F += part.F;
     error += part.error;
   }
-  const auto truth = static_cast<double>(oracle_form_factor(x, normal, sliver, {}).F);
+  const auto truth = static_cast<double>(oracle_form_factor({x, normal, sliver, {}}).F);
   ASSERT_GT(truth, 1e-12);
   EXPECT_NEAR(F, truth, 6e-13);
   EXPECT_LE(std::fabs(F - truth), error);
