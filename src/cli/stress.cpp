@@ -1,5 +1,6 @@
 // exitance stress: degenerate questions by the thousand, against the oracle and against properties.
 
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <memory>
@@ -12,8 +13,10 @@
 #include "src/cli/progress_display.h"
 #include "src/cli/stress_report.h"
 #include "src/cli/verbs.h"
+#include "src/output/manifest.h"
 #include "src/output/result_folder.h"
 #include "src/output/whole_file.h"
+#include "src/stress/stress_table.h"
 
 namespace exitance {
 namespace {
@@ -75,9 +78,12 @@ class Stress {
         write_whole_file(folder->draft() / name, [&](std::ostream& out) { out << text; });
       };
       write("stress.json", to_json(summary));
-      write("stress.csv", to_csv(summary));
+      write("stress.csv", stress_csv(report));
       write("failures.json", failures_as_cases(report));
-      write_stress_map(folder->draft() / "stress.svg", summary);
+      const Manifest build = build_manifest();
+      write_stress_map(
+          folder->draft() / "stress.svg", report, contenders_,
+          fmt::format("seed {}; exitance {} ({})", options_.seed, build.version, build.commit.substr(0, 7)));
       folder->publish();
     }
     print_results(json_ ? to_json(summary) : printable(in_words(summary)));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "src/output/heat_map.h"
 #include "src/output/manifest.h"
 
 namespace exitance {
@@ -184,24 +183,6 @@ std::string in_words(const StressSummary& summary) {
   return text;
 }
 
-std::string to_csv(const StressSummary& summary) {
-  std::string text =
-      "family,magnitude,contender,questions,none,some,all,wrong,worst_error,worst_relative_error,worst_margin,filter,"
-      "interval,exact,extended,seconds";
-  for (const std::string& name : property_names()) text += fmt::format(",{0}_tried,{0}_broken,{0}_defect", name);
-  text += "\n";
-  for (const StressRow& row : summary.report.rows) {
-    const StressTally& t = row.tally;
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{},{},{},{},{:.6g}", row.family, row.departure,
-                    row.contender, t.questions, t.none, t.some, t.all, t.wrong, t.worst_error, t.worst_relative_error,
-                    t.worst_margin, t.stages.filter, t.stages.interval, t.stages.exact, t.extended, t.seconds);
-    for (const PropertyTally& p : t.properties) text += fmt::format(",{},{},{:.6g}", p.tried, p.broken, p.worst_defect);
-    text += "\n";
-  }
-  return text;
-}
-
 std::string failures_as_cases(const StressReport& report) {
   std::string text = "{\"cases\":[";
   bool is_first = true;
@@ -215,33 +196,6 @@ std::string failures_as_cases(const StressReport& report) {
     }
   }
   return text + "\n]}\n";
-}
-
-void write_stress_map(const std::filesystem::path& path, const StressSummary& summary) {
-  HeatMap map;
-  map.title = "Worst error of F (with the number of wrong answers and broken properties)";
-  map.scale_label = "|F - truth|, or defect of a property where larger";
-  const Manifest build = build_manifest();
-  map.note = fmt::format("{} questions, seed {}; exitance {} ({})", summary.report.questions, summary.seed,
-                         build.version, build.commit.substr(0, 7));
-  for (const std::string& contender : summary.contenders) {
-    HeatMap::Panel panel{contender, {}, {}};
-    for (const Departure& d : departures()) panel.columns.push_back(d.name);
-    for (const auto& [family, rows] : by_family(summary.report, contender)) {
-      if (map.panels.empty()) map.row_names.push_back(family);
-      std::vector<HeatMap::Cell> cells;
-      for (const StressRow* row : rows) {
-        const StressTally& t = row->tally;
-        double worst = t.worst_error;
-        for (const PropertyTally& p : t.properties) worst = std::max(worst, p.worst_defect);
-        const std::uint64_t wrong = t.wrong + t.broken();
-        cells.push_back({worst, wrong == 0 ? "" : std::to_string(wrong)});
-      }
-      panel.rows.push_back(std::move(cells));
-    }
-    map.panels.push_back(std::move(panel));
-  }
-  write_heat_map(path, map);
 }
 
 }  // namespace exitance
