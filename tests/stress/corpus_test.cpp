@@ -1,4 +1,5 @@
-// Questions that were once answered wrong, or might be: each with its answer, which the oracle or a closed form gave.
+// Questions that were once answered wrong, by us or by plain doubles, each with the oracle's answer as `truth`; and the
+// sum over a closed room around each.
 
 #include <gtest/gtest.h>
 
@@ -6,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "src/cli/case_reader.h"
+#include "src/stress/property.h"
 #include "tests/cli/program.h"
 
 namespace exitance {
@@ -34,6 +37,8 @@ TEST_P(Corpus, IsAnsweredRight) {
     if (truth == 0) {
       EXPECT_EQ(F, 0) << cases[k].at("id");
     }
+    const PropertyTrial closure = try_closure(read_point_question(cases[k]));
+    EXPECT_TRUE(closure.holds()) << cases[k].at("id") << ": front and back miss 1 by " << closure.defect;
   }
 }
 
