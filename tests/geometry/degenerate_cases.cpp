@@ -5,64 +5,20 @@
 #include <cmath>
 
 #include "src/stress/placement.h"
+#include "src/stress/stage.h"
 
 namespace exitance {
 namespace {
 
 // The stage all families play on: the point is the origin and looks up; the source lies at height 16 and faces down;
 // most occluders lie at height 8, so that a length of theirs is twice as long on the source.
-constexpr double kSourceHeight = 16, kMiddle = 8;
+constexpr double kSourceHeight = Stage::kSourceHeight, kMiddle = Stage::kMiddle;
 
-using Loop = std::vector<Vec3>;
-using Points2 = std::vector<std::array<double, 2>>;
-
-Loop at_height(double z, const Points2& points) {
-  Loop loop;
-  for (const auto& [x, y] : points) loop.push_back({x, y, z});
-  return loop;
-}
-
-Loop rectangle(double z, double x0, double y0, double x1, double y1) {
-  return at_height(z, {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
-}
-
-Loop reversed(Loop loop) {
-  std::reverse(loop.begin(), loop.end());
-  return loop;
-}
-
-Obstacle sheet(Loop loop) {
-  return {{{std::move(loop), {}}}, false};
-}
 Obstacle middle(double x0, double y0, double x1, double y1) {
   return sheet(rectangle(kMiddle, x0, y0, x1, y1));
 }
 Obstacle middle(const Points2& points) {
   return sheet(at_height(kMiddle, points));
-}
-
-Obstacle box(const Vec3& a, const Vec3& b) {
-  const auto corner = [&](int i) { return Vec3{i & 1 ? b.x : a.x, i & 2 ? b.y : a.y, i & 4 ? b.z : a.z}; };
-  Obstacle solid{{}, true};
-  for (const auto& f : {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
-    solid.faces.push_back({{corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3])}, {}});
-  }
-  return solid;
-}
-
-Obstacle octahedron(const Vec3& centre, double r) {
-  Obstacle solid{{}, true};
-  for (int octant = 0; octant < 8; ++octant) {
-    const Vec3 x{octant & 1 ? -r : r, 0, 0}, y{0, octant & 2 ? -r : r, 0}, z{0, 0, octant & 4 ? -r : r};
-    const bool mirrored = ((octant & 1) != 0) != (((octant & 2) != 0) != ((octant & 4) != 0));
-    solid.faces.push_back({{centre + x, centre + (mirrored ? z : y), centre + (mirrored ? y : z)}, {}});
-  }
-  return solid;
-}
-
-Obstacle tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  if (dot(cross(b - a, c - a), d - a) > 0) return tetrahedron(a, c, b, d);
-  return {{{{a, b, c}, {}}, {{a, d, b}, {}}, {{b, d, c}, {}}, {{c, d, a}, {}}}, true};
 }
 
 /// The same surface as triangles: each face of at most four corners cut along a diagonal.

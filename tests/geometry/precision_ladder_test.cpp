@@ -60,7 +60,7 @@ Aimed aimed(Aim aim, Random& random) {
     b = {whole(), whole(), whole()};
     c = {whole(), whole(), whole()};
     n = cross(b, c);
-  } while (n.z == 0 || (n.x == 0 && n.y == 0));
+  } while (n.x == 0 || n.y == 0 || n.z == 0);
   Vec3 v{n.y, -n.x, 0};
   if (aim == Aim::hair) v.z = std::ldexp(random.whole(0, 1) == 0 ? 1 : -1, -random.whole(70, 200));
   return {{}, b, c, v};
@@ -226,11 +226,12 @@ TEST_P(Ladder, ValuesThroughAPointAreWithinTheirBounds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Predicates, Ladder, testing::Values(Aim::clear, Aim::rounded, Aim::hair, Aim::on),
-                         [](const auto& one) {
-                           constexpr std::array kNames{"clear", "rounded", "hair", "on"};
-                           return kNames[static_cast<std::size_t>(one.param)];
-                         });
+std::string name_of(const testing::TestParamInfo<Aim>& one) {
+  static const std::array<std::string, 4> kNames = {"clear", "rounded", "hair", "on"};
+  return kNames[static_cast<std::size_t>(one.param)];
+}
+
+INSTANTIATE_TEST_SUITE_P(Predicates, Ladder, testing::Values(Aim::clear, Aim::rounded, Aim::hair, Aim::on), name_of);
 
 /// A tie goes the way of the first component of the gradient that is not 0.
 TEST(GradientSign, TiesGoTheWayOfTheGradient) {
