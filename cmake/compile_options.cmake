@@ -4,7 +4,7 @@ add_library(exitance_compile_options INTERFACE)
 target_compile_features(exitance_compile_options INTERFACE cxx_std_20)
 target_compile_options(exitance_compile_options INTERFACE
   -Wall -Wextra -Wshadow -Wconversion -Werror
-  -Wno-restrict  # GCC 12 warns of std::string + literal without cause (its bug 105651)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12 warns of std::string + literal without cause (its bug 105651)
   -Wno-psabi  # vectors wider than the machine has registers for never cross a library's border
   -ffp-contract=off -frounding-math -fno-math-errno
   $<$<BOOL:${EXITANCE_ARCH}>:-march=${EXITANCE_ARCH}>)

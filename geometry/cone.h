@@ -64,12 +64,8 @@ struct Signed {
 template <class Real>
 struct Stretch {
   Real lo{0}, hi{1}, lo_error{0}, hi_error{0};
-  bool empty = false;  ///< by an exact decision
-
-  /// Whether nothing was narrowed of the other.
-  bool is_all_of(const Stretch& other) const {
-    return lo == other.lo && hi == other.hi && lo_error == other.lo_error && hi_error == other.hi_error;
-  }
+  bool empty = false;   ///< by an exact decision
+  bool narrow = false;  ///< whether it may have been narrowed, by however little
 };
 
 /// Corners as seen from the point of view.
@@ -483,10 +479,16 @@ void narrow(Stretch<Real>& stretch, Signed<Real> a, Signed<Real> b, const Real& 
     }
     error += 5 * roundoff<Real>();
     if (a.sign > 0) {
-      if (t - error < stretch.hi + stretch.hi_error && error > stretch.hi_error) stretch.hi_error = error;
+      if (t - error < stretch.hi + stretch.hi_error) {
+        stretch.narrow = true;
+        if (error > stretch.hi_error) stretch.hi_error = error;
+      }
       if (t < stretch.hi) stretch.hi = t;
     } else {
-      if (t + error > stretch.lo - stretch.lo_error && error > stretch.lo_error) stretch.lo_error = error;
+      if (t + error > stretch.lo - stretch.lo_error) {
+        stretch.narrow = true;
+        if (error > stretch.lo_error) stretch.lo_error = error;
+      }
       if (t > stretch.lo) stretch.lo = t;
     }
   }

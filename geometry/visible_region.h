@@ -559,6 +559,7 @@ bool VisibleRegion<Real>::cover(const Added& a, const Added& b, bool b_first) {
   const Cone<Real>& cone = *a.cone;
   const std::size_t n = cone.sides.size();
   within_ = open_;
+  for (Stretch<Real>& stretch : within_) stretch.narrow = false;
   std::size_t left = n;
   for (const auto& side : b.cone->sides) {
     fill(row_, side, cone);
@@ -586,7 +587,7 @@ bool VisibleRegion<Real>::cover(const Added& a, const Added& b, bool b_first) {
   for (std::size_t k = 0; k < n; ++k) {
     if (!within_[k].empty) {
       covered_[k].push_back(within_[k]);
-      open_[k].empty = within_[k].is_all_of(open_[k]);
+      open_[k].empty = !within_[k].narrow;
     }
     any_open = any_open || !open_[k].empty;
   }

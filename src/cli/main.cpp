@@ -72,5 +72,6 @@ int main(int argc, char** argv) {
   add_generate(app);
   add_reference(app);
   add_solve(app);
+  add_stress(app);
   return run(app, argc, argv);
 }

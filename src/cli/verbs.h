@@ -17,5 +17,6 @@ void add_formfactor(CLI::App& app);
 void add_generate(CLI::App& app);
 void add_reference(CLI::App& app);
 void add_solve(CLI::App& app);
+void add_stress(CLI::App& app);
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 
 #include "geometry/polygon.h"
 #include "geometry/polygon_soup.h"
+#include "geometry/viewpoint.h"
 #include "src/form_factor/exact_scale.h"
 
 namespace exitance {
@@ -25,7 +26,7 @@ struct QuestionScene {
   /// Returns whether it was taken.
   bool add(const Polygon& polygon, Role role, const std::string& name);
   /// Adds every face, divided by 2^exponent, under the name "occluders[k]".
-  void add(const std::vector<Obstacle>& obstacles, int exponent);
+  void add(const std::vector<Obstacle>& obstacles, int exponent = 0);
 };
 
 struct PointQuestion {
@@ -34,9 +35,23 @@ struct PointQuestion {
   std::vector<Obstacle> occluders;
 };
 
+/// A question of the same F whose coordinates were divided by 2^exponent, and those of its normal by another power of
+/// two, so that products of them neither overflow nor vanish.
+struct ScaledQuestion {
+  PointQuestion question;
+  int exponent = 0;
+};
+
+/// Throws std::invalid_argument when the coordinates span too many orders of magnitude (ExactScale).
+ScaledQuestion scaled_near_one(PointQuestion question);
+
 struct PointAnswer {
   double F = 0;
   double F_error = 0;  ///< proven bound of |F − true F|
+  /// Open or blocked where every facet of the source that faces the point is.
+  Visibility visibility = Visibility::away;
+  StageCounts stages;          ///< how the predicates were decided
+  std::uint64_t extended = 0;  ///< facets that double precision could not answer to the tolerance
 };
 
 /// Form factor from the point to the front of the source. Coordinates may have any size that doubles have. A source or

@@ -122,7 +122,13 @@ struct ArchiveWriter::File {
 
 ArchiveWriter::ArchiveWriter(const std::filesystem::path& path, std::string_view kind)
     : file_(new File{.draft = Draft(path)}) {
-  write(kKind, kind);
+  try {
+    write(kKind, kind);
+  } catch (...) {
+    const Silence silence;  // closing writes once more
+    file_.reset();
+    throw;
+  }
 }
 
 ArchiveWriter::~ArchiveWriter() {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "src/form_factor/pole.h"
-#include "tests/geometry/placement.h"
+#include "src/stress/placement.h"
 
 namespace exitance {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "src/form_factor/visual_events.h"
 #include "src/scene/reader.h"
-#include "tests/geometry/placement.h"
+#include "src/stress/placement.h"
 
 namespace exitance {
 namespace {

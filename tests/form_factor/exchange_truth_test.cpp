@@ -16,9 +16,9 @@
 #include <string>
 
 #include "src/form_factor/pair_form_factor.h"
+#include "src/stress/placement.h"
 #include "tests/form_factor/closed_forms.h"
 #include "tests/form_factor/exchange_scenes.h"
-#include "tests/geometry/placement.h"
 
 namespace exitance {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "tests/geometry/placement.h"
+#include "src/stress/placement.h"
 
 namespace exitance {
 namespace {

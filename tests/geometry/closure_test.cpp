@@ -12,7 +12,7 @@
 
 #include "geometry/facets.h"
 #include "geometry/viewpoint.h"
-#include "tests/geometry/placement.h"
+#include "src/stress/placement.h"
 #include "tests/geometry/solids.h"
 
 namespace exitance {

@@ -10,9 +10,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "src/stress/placement.h"
 #include "tests/form_factor/closed_forms.h"
 #include "tests/geometry/exchange_oracle.h"
-#include "tests/geometry/placement.h"
 
 namespace exitance {
 namespace {

@@ -4,70 +4,26 @@
 #include <array>
 #include <cmath>
 
-#include "tests/geometry/placement.h"
+#include "src/stress/placement.h"
+#include "src/stress/stage.h"
 
 namespace exitance {
 namespace {
 
 // The stage all families play on: the point is the origin and looks up; the source lies at height 16 and faces down;
 // most occluders lie at height 8, so that a length of theirs is twice as long on the source.
-constexpr double kSourceHeight = 16, kMiddle = 8;
+constexpr double kSourceHeight = Stage::kSourceHeight, kMiddle = Stage::kMiddle;
 
-using Loop = std::vector<Vec3>;
-using Points2 = std::vector<std::array<double, 2>>;
-
-Loop at_height(double z, const Points2& points) {
-  Loop loop;
-  for (const auto& [x, y] : points) loop.push_back({x, y, z});
-  return loop;
-}
-
-Loop rectangle(double z, double x0, double y0, double x1, double y1) {
-  return at_height(z, {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
-}
-
-Loop reversed(Loop loop) {
-  std::reverse(loop.begin(), loop.end());
-  return loop;
-}
-
-Occluder sheet(Loop loop) {
-  return {{{std::move(loop), {}}}, false};
-}
-Occluder middle(double x0, double y0, double x1, double y1) {
+Obstacle middle(double x0, double y0, double x1, double y1) {
   return sheet(rectangle(kMiddle, x0, y0, x1, y1));
 }
-Occluder middle(const Points2& points) {
+Obstacle middle(const Points2& points) {
   return sheet(at_height(kMiddle, points));
 }
 
-Occluder box(const Vec3& a, const Vec3& b) {
-  const auto corner = [&](int i) { return Vec3{i & 1 ? b.x : a.x, i & 2 ? b.y : a.y, i & 4 ? b.z : a.z}; };
-  Occluder solid{{}, true};
-  for (const auto& f : {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
-    solid.faces.push_back({{corner(f[0]), corner(f[1]), corner(f[2]), corner(f[3])}, {}});
-  }
-  return solid;
-}
-
-Occluder octahedron(const Vec3& centre, double r) {
-  Occluder solid{{}, true};
-  for (int octant = 0; octant < 8; ++octant) {
-    const Vec3 x{octant & 1 ? -r : r, 0, 0}, y{0, octant & 2 ? -r : r, 0}, z{0, 0, octant & 4 ? -r : r};
-    const bool mirrored = ((octant & 1) != 0) != (((octant & 2) != 0) != ((octant & 4) != 0));
-    solid.faces.push_back({{centre + x, centre + (mirrored ? z : y), centre + (mirrored ? y : z)}, {}});
-  }
-  return solid;
-}
-
-Occluder tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  if (dot(cross(b - a, c - a), d - a) > 0) return tetrahedron(a, c, b, d);
-  return {{{{a, b, c}, {}}, {{a, d, b}, {}}, {{b, d, c}, {}}, {{c, d, a}, {}}}, true};
-}
-
 /// The same surface as triangles: each face of at most four corners cut along a diagonal.
-Occluder as_triangles(const Occluder& occluder) {
-  Occluder cut{{}, occluder.solid};
+Obstacle as_triangles(const Obstacle& occluder) {
+  Obstacle cut{{}, occluder.solid};
   for (const Polygon& face : occluder.faces) {
     for (std::size_t i = 2; i < face.outer.size(); ++i) {
       cut.faces.push_back({{face.outer[0], face.outer[i - 1], face.outer[i]}, {}});
@@ -86,7 +42,7 @@ const Looking kUp{{0, 0, 0}, {0, 0, 1}};
 /// Collects the families on the stage.
 class Families {
  public:
-  void add(std::string name, std::vector<Occluder> occluders, const Polygon& source = kCeiling,
+  void add(std::string name, std::vector<Obstacle> occluders, const Polygon& source = kCeiling,
            const Looking& looking = kUp) {
     cases_.push_back({std::move(name), looking.from, looking.along, source, std::move(occluders)});
   }
@@ -133,7 +89,7 @@ void Families::shared_edges() {
       {sheet({{0, -2, 8}, {3, -2, 8}, {3, 2, 8}, {0, 2, 8}}), sheet({{0, -2, 8}, {0, 2, 8}, {0, 2, 4}, {0, -2, 4}})});
   for (const int n : {3, 4, 6}) {
     const Points2 rim{{3, 0}, {2, 2}, {-1, 3}, {-3, 1}, {-2, -2}, {1, -3}};
-    std::vector<Occluder> fan, around;
+    std::vector<Obstacle> fan, around;
     for (int i = 0; i < n; ++i) {
       const auto p = rim[static_cast<std::size_t>(i * 6 / n)], q = rim[static_cast<std::size_t>((i + 1) * 6 / n % 6)];
       fan.push_back(middle({{0, 0}, p, q}));
@@ -144,7 +100,7 @@ void Families::shared_edges() {
     fan.pop_back();
     add("shared_edge/open_fan_" + std::to_string(n), fan);
   }
-  std::vector<Occluder> bricks, tiles, triangles;
+  std::vector<Obstacle> bricks, tiles, triangles;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
       const double x = column - 1.5 + 0.5 * (row % 2), y = row - 1.5;
@@ -209,7 +165,7 @@ void Families::repeated() {
 }
 
 void Families::crossing() {
-  const Occluder slope = sheet({{-2, -2, 6}, {2, -2, 10}, {2, 2, 10}, {-2, 2, 6}});
+  const Obstacle slope = sheet({{-2, -2, 6}, {2, -2, 10}, {2, 2, 10}, {-2, 2, 6}});
   add("interpenetrating/two", {slope, sheet({{-2, -2, 10}, {2, -2, 6}, {2, 2, 6}, {-2, 2, 10}})});
   add("interpenetrating/edge_in_face", {slope, sheet({{-1, 0, 8}, {1, 0, 8}, {0, 3, 9}})});
   add("interpenetrating/vertex_in_face", {slope, sheet({{0, 0, 8}, {4, 1, 8}, {3, 3, 6}})});
@@ -222,7 +178,7 @@ void Families::crossing() {
        sheet({{-1, -3, 6}, {0, -3, 8}, {0, 3, 8}, {-1, 3, 6}}), sheet({{1, -3, 6}, {2, -3, 8}, {2, 3, 8}, {1, 3, 6}}),
        sheet({{-4, 0, 7}, {4, 0, 7}, {4, 1, 7}, {-4, 1, 7}})});
   for (const int n : {3, 5, 8}) {
-    std::vector<Occluder> pencil;  // all edges run through the point over the origin
+    std::vector<Obstacle> pencil;  // all edges run through the point over the origin
     for (int i = 0; i < n; ++i) pencil.push_back(middle({{0, 0}, {4, i - 2.0}, {3.5, i - 1.5}}));
     add("interpenetrating/pencil_" + std::to_string(n), pencil);
   }
@@ -234,7 +190,7 @@ void Families::slivers() {
       const std::string name =
           "sliver/" + std::to_string(n) + "_of_1e" + std::to_string(std::lround(std::log10(aspect)));
       Random random(name);
-      std::vector<Occluder> needles, crossing;
+      std::vector<Obstacle> needles, crossing;
       for (int i = 0; i < n; ++i) {
         const double x = random.real(-3, 3), y = random.real(-3, 3), z = random.real(4, 12);
         const double dx = random.real(-4, 4), dy = random.real(-4, 4), dz = random.real(-2, 2);
@@ -248,7 +204,7 @@ void Families::slivers() {
     }
   }
   add("sliver/fan", [] {
-    std::vector<Occluder> fan;
+    std::vector<Obstacle> fan;
     for (int i = 0; i < 12; ++i) fan.push_back(middle({{-4, -4}, {4, -1 + i / 8.0}, {4, -1 + (i + 1) / 8.0}}));
     return fan;
   }());
@@ -339,9 +295,9 @@ void Families::horizon() {
     return p;
   }();
   const auto facing = [&](double z0, double z1) { return Polygon{reversed(wall(z0, z1).outer), {}}; };
-  const Occluder half = sheet({{4, -1, 0}, {4, 1, 0}, {4, 1, 4}, {4, -1, 4}});
-  const Occluder across = sheet({{4, -1, -2}, {4, 1, -2}, {4, 1, 2}, {4, -1, 2}});
-  const Occluder below = sheet({{4, -1, -3}, {4, 1, -3}, {4, 1, 0}, {4, -1, 0}});
+  const Obstacle half = sheet({{4, -1, 0}, {4, 1, 0}, {4, 1, 4}, {4, -1, 4}});
+  const Obstacle across = sheet({{4, -1, -2}, {4, 1, -2}, {4, 1, 2}, {4, -1, 2}});
+  const Obstacle below = sheet({{4, -1, -3}, {4, 1, -3}, {4, 1, 0}, {4, -1, 0}});
   for (const auto& [name, source] : {std::pair{"across", front},
                                      {"down_to_it", facing(0, 8)},
                                      {"below", facing(-8, 0)},
@@ -370,7 +326,7 @@ void Families::horizon() {
 
 void Families::through_the_point() {
   const Vec3 o{};
-  const Occluder veil = middle(-1, -2, 2, 1);
+  const Obstacle veil = middle(-1, -2, 2, 1);
   const std::vector<std::pair<const char*, Loop>> ones{
       {"on_plane", {{2, 0, 1}, {4, 0, 8}, {1, 0, 8}}},
       {"on_edge_line", {{1, 1, 4}, {2, 2, 8}, {3, 1, 8}}},
@@ -382,7 +338,7 @@ void Families::through_the_point() {
       {"inside_upright", {{0, -2, -4}, {0, 2, -4}, {0, 2, 4}, {0, -2, 4}}},
       {"on_edge_of_upright", {{0, -2, 0}, {0, 2, 0}, {0, 2, 4}, {0, -2, 4}}},
   };
-  std::vector<Occluder> all{veil};
+  std::vector<Obstacle> all{veil};
   for (const auto& [name, loop] : ones) {
     add(std::string("at_the_point/") + name, {sheet(loop)});
     add(std::string("at_the_point/") + name + "_and_another", {veil, sheet(loop)});
@@ -438,7 +394,7 @@ void Families::shapes() {
   const Polygon sashes{rectangle(kMiddle, -3, -3, 3, 3),
                        {rectangle(kMiddle, -2, -2, -1, 2), reversed(rectangle(kMiddle, 1, -2, 2, 2))}};
   const Polygon ring{reversed(rectangle(kSourceHeight, -8, -8, 8, 8)), {rectangle(kSourceHeight, -2, -2, 2, 2)}};
-  const auto occluder = [](const Polygon& p) { return Occluder{{p}, false}; };
+  const auto occluder = [](const Polygon& p) { return Obstacle{{p}, false}; };
   add("hole/occluder", {occluder(frame)});
   add("hole/two_holes", {occluder(sashes)});
   add("hole/plugged", {occluder(frame), middle(-1, -1, 1, 1)});
@@ -462,7 +418,7 @@ void Families::shapes() {
 }
 
 void Families::no_area() {
-  const Occluder veil = middle(-1, -2, 2, 1);
+  const Obstacle veil = middle(-1, -2, 2, 1);
   add("no_area/segment", {veil, middle({{-3, -3}, {0, 0}, {3, 3}})});
   add("no_area/segment_back_and_forth", {veil, middle({{-3, -3}, {3, 3}, {0, 0}, {1, 1}})});
   add("no_area/point", {veil, middle({{1, 1}, {1, 1}, {1, 1}})});
@@ -499,7 +455,7 @@ void Families::solids() {
 }
 
 void Families::outside() {
-  const Occluder veil = middle(-1, -2, 2, 1);
+  const Obstacle veil = middle(-1, -2, 2, 1);
   add("outside/behind_the_point", {veil, sheet(rectangle(-4, -2, -2, 2, 2))});
   add("outside/behind_and_mirrored", {sheet(rectangle(-8, -4, -4, 4, 4))});
   add("outside/beyond_the_source", {veil, sheet(rectangle(20, -9, -9, 9, 9))});
@@ -579,7 +535,7 @@ void Families::lattice_soups() {
   for (int i = 0; i < 60; ++i) {
     const std::string name = "soup/" + std::to_string(i);
     Random random(name);
-    std::vector<Occluder> occluders;
+    std::vector<Obstacle> occluders;
     const auto corner = [&](int low, int high) {
       const int z = random.whole(low, high);  // doubled towards the point's distance, so that cones coincide often
       const double scale = i % 2 == 0 ? 1 : z / 8.0;
@@ -636,7 +592,7 @@ std::vector<PointCase> degenerate_cases() {
       PointCase placed{
           staged.name + "/" + place.name, place(staged.point), place.normal(staged.normal), place(staged.source), {}};
       bool usable = is_usable(placed.source);
-      for (const Occluder& occluder : staged.occluders) {
+      for (const Obstacle& occluder : staged.occluders) {
         placed.occluders.push_back({{}, occluder.solid});
         for (const Polygon& face : occluder.faces) {
           placed.occluders.back().faces.push_back(place(face));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/polygon.h"
-#include "tests/geometry/visibility_oracle.h"
+#include "src/stress/visibility_oracle.h"
 
 namespace exitance {
 
@@ -13,7 +13,7 @@ struct PointCase {
   std::string name;  ///< family/member/placement
   Vec3 point, normal;
   Polygon source;
-  std::vector<Occluder> occluders;
+  std::vector<Obstacle> occluders;
 };
 
 /// Every family in every placement: on the integer lattice, in a tilted lattice (as exact, but no plane is an axis'),

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "geometry/bounded.h"
-#include "tests/geometry/placement.h"
+#include "src/stress/placement.h"
 
 namespace exitance {
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "tests/geometry/placement.h"
+#include "src/stress/placement.h"
 
 namespace exitance {
 namespace {

@@ -36,7 +36,7 @@ TEST(Sieve, HoldsBackWhatHidesNothing) {
   for (const PointCase& question : degenerate_cases()) {
     std::vector<Polygon> polygons{question.source};
     std::vector<Role> roles{Role::unoccluding};
-    for (const Occluder& occluder : question.occluders) {
+    for (const Obstacle& occluder : question.occluders) {
       for (const Polygon& face : occluder.faces) {
         polygons.push_back(face);
         roles.push_back(occluder.solid ? Role::solid_face : Role::sheet);

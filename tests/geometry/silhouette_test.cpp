@@ -11,9 +11,9 @@
 
 #include "geometry/view_cones.h"
 #include "geometry/viewpoint.h"
-#include "tests/geometry/placement.h"
+#include "src/stress/placement.h"
+#include "src/stress/visibility_oracle.h"
 #include "tests/geometry/solids.h"
-#include "tests/geometry/visibility_oracle.h"
 
 namespace exitance {
 namespace {
@@ -63,9 +63,9 @@ TEST(Silhouette, AgreesWithTheOracle) {
       const Question q = question(random, 1 + k % 3);
       std::vector<Polygon> polygons{place(q.source)};
       std::vector<Role> roles{Role::patch};
-      std::vector<Occluder> occluders;
+      std::vector<Obstacle> occluders;
       for (const Faces& faces : q.solids) {
-        Occluder& occluder = occluders.emplace_back();
+        Obstacle& occluder = occluders.emplace_back();
         occluder.solid = true;
         for (const Polygon& f : faces) occluder.faces.push_back(place(f));
         polygons.insert(polygons.end(), occluder.faces.begin(), occluder.faces.end());
@@ -85,7 +85,7 @@ TEST(Silhouette, AgreesWithTheOracle) {
         error += answer.error;
         partial += answer.visibility == Visibility::partial;
       }
-      const auto truth = static_cast<double>(oracle_form_factor(point, normal, polygons[0], occluders).F);
+      const auto truth = static_cast<double>(oracle_form_factor({point, normal, polygons[0], occluders}).F);
       EXPECT_LE(std::fabs(F - truth), error + 1e-17) << place.name << ", question " << k << ": " << F << ", " << truth;
       EXPECT_LE(error, 1e-11) << place.name << ", question " << k;
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/geometry/visibility_oracle.h"
+#include "src/stress/visibility_oracle.h"
 
 namespace exitance {
 namespace {
@@ -184,7 +184,7 @@ TEST(Viewpoint, AValueThatItsErrorHidesIsFoundByMoreDigits) {
     F += part.F;
     error += part.error;
   }
-  const auto truth = static_cast<double>(oracle_form_factor(x, normal, sliver, {}).F);
+  const auto truth = static_cast<double>(oracle_form_factor({x, normal, sliver, {}}).F);
   ASSERT_GT(truth, 1e-12);
   EXPECT_NEAR(F, truth, 6e-13);
   EXPECT_LE(std::fabs(F - truth), error);
@@ -199,6 +199,27 @@ TEST(Viewpoint, SheetsAreSeenFromOneSide) {
   view.look_from({{0, 0, 0}, {0, 0, 1}});
   EXPECT_GT(view.form_factor({0, {}}).F, 0.5);
   EXPECT_EQ(view.form_factor({1, {}}).F, 0);
+}
+
+// A corner of a sheet lies an ulp from the point, so that nearly all of what is seen of the edges that end there is
+// seen of their last ulp: a stretch of it that another sheet leaves open must not be taken for one that is not there.
+TEST(Viewpoint, StretchesWithinRoundingAreSeen) {
+  const Vec3 x{0.0062500000000000003, 0.012500000000000001, 0.018749999999999999}, normal{-0.625, -0.375, -0.625};
+  const std::vector<Polygon> polygons = {
+      {{{-0.078125, 0.046875, -0.1875},
+        {-0.4375, -0.15625, -0.125},
+        {0.0062500000000000012, 0.012500000000000002, 0.018749999999999996}},
+       {}},
+      {{{-0.0625, -0.375, -0.4375}, {-0.3125, -0.0546875, -0.625}, {-0.1875, -0.15625, -0.4375}}, {}},
+      {{{-0.21875, -0.875, -0.75}, {-0.3125, -0.009765625, -1.25}, {-1, 0.1875, -0.5}}, {}}};
+  const std::vector<Role> roles = {Role::sheet, Role::sheet, Role::unoccluding};
+  const PolygonSoup soup(polygons, roles);
+  Viewpoint view(soup);
+  view.look_from({x, normal});
+  const PointFormFactor seen = view.form_factor({2, {}});
+  const PointQuestion question{x, normal, polygons[2], {{{polygons[0]}, false}, {{polygons[1]}, false}}};
+  EXPECT_NEAR(seen.F, static_cast<double>(oracle_form_factor(question).F), seen.error + kRoundoff);
+  EXPECT_LE(seen.error, 1e-13);
 }
 
 }  // namespace

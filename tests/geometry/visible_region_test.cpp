@@ -8,8 +8,8 @@
 
 #include "geometry/polygon_soup.h"
 #include "geometry/viewpoint.h"
+#include "src/stress/visibility_oracle.h"
 #include "tests/geometry/degenerate_cases.h"
-#include "tests/geometry/visibility_oracle.h"
 
 namespace exitance {
 namespace {
@@ -22,7 +22,7 @@ struct Scene {
 /// The source is polygon 0.
 Scene scene_of(const PointCase& question) {
   Scene scene{{question.source}, {Role::unoccluding}};
-  for (const Occluder& occluder : question.occluders) {
+  for (const Obstacle& occluder : question.occluders) {
     for (const Polygon& face : occluder.faces) {
       scene.polygons.push_back(face);
       scene.roles.push_back(occluder.solid ? Role::solid_face : Role::sheet);
@@ -80,7 +80,8 @@ class DegenerateFamily : public testing::TestWithParam<std::string> {};
 TEST_P(DegenerateFamily, AgreesWithTheOracle) {
   for (const PointCase& question : degenerate_cases()) {
     if (family_of(question) != GetParam()) continue;
-    const OracleAnswer truth = oracle_form_factor(question.point, question.normal, question.source, question.occluders);
+    const OracleAnswer truth =
+        oracle_form_factor({question.point, question.normal, question.source, question.occluders});
     const KernelAnswer answer = ask_kernel(question);
     const long double error = std::abs(answer.F - truth.F);
     EXPECT_LE(error, 1e-12L) << question.name << ": " << answer.F << " instead of " << truth.F;

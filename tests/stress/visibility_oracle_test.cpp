@@ -1,13 +1,13 @@
 // The oracle itself, against closed forms, symmetry and rays.
 
-#include "tests/geometry/visibility_oracle.h"
+#include "src/stress/visibility_oracle.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "tests/geometry/placement.h"
+#include "src/stress/placement.h"
 
 namespace exitance {
 namespace {
@@ -27,12 +27,12 @@ Polygon ceiling(double z, double x0, double y0, double x1, double y1) {
   return {{{x0, y1, z}, {x1, y1, z}, {x1, y0, z}, {x0, y0, z}}, {}};
 }
 
-Occluder sheet(Loop loop) {
+Obstacle sheet(Loop loop) {
   return {{{std::move(loop), {}}}, false};
 }
 
-long double form_factor(const Polygon& source, const std::vector<Occluder>& occluders = {}, const Vec3& normal = kUp) {
-  return oracle_form_factor(kPoint, normal, source, occluders).F;
+long double form_factor(const Polygon& source, const std::vector<Obstacle>& occluders = {}, const Vec3& normal = kUp) {
+  return oracle_form_factor({kPoint, normal, source, occluders}).F;
 }
 
 bool agree(long double a, long double b) {
@@ -76,8 +76,8 @@ TEST(Oracle, SourcesEmitOnTheirFrontOnly) {
 TEST(Oracle, ScalesCancel) {
   const long double unit = form_factor(ceiling(2, -1, -2, 3, 5), {sheet(rectangle(1, 0, 0, 1, 1))});
   for (const double s : {0x1p-40, 0x1p40}) {
-    const auto answer = oracle_form_factor(kPoint, s * kUp, ceiling(2 * s, -s, -2 * s, 3 * s, 5 * s),
-                                           {sheet(rectangle(s, 0, 0, s, s))});
+    const auto answer = oracle_form_factor(
+        {kPoint, s * kUp, ceiling(2 * s, -s, -2 * s, 3 * s, 5 * s), {sheet(rectangle(s, 0, 0, s, s))}});
     EXPECT_EQ(answer.F, unit);
     EXPECT_EQ(answer.visible_area, 24 * static_cast<long double>(s) * s);
   }
@@ -86,7 +86,7 @@ TEST(Oracle, ScalesCancel) {
 TEST(Oracle, ShadowsAreTakenAwayOnce) {
   const Polygon source = ceiling(2, -1, -2, 3, 5);
   const long double shadow = parallel_rectangle(1, 2, 2);
-  const Occluder veil = sheet(rectangle(1, 0, 0, 0.5, 1));
+  const Obstacle veil = sheet(rectangle(1, 0, 0, 0.5, 1));
   EXPECT_PRED2(agree, form_factor(source, {veil}), form_factor(source) - shadow);
   EXPECT_EQ(form_factor(source, {veil, veil}), form_factor(source, {veil}));
   EXPECT_EQ(form_factor(source, {sheet({{0, 1, 1}, {0.5, 1, 1}, {0.5, 0, 1}, {0, 0, 1}})}), form_factor(source, {veil}))
@@ -137,7 +137,7 @@ TEST(Oracle, ContactsFollowTheRules) {
 
 TEST(Oracle, NonPlanarSourcesAreTheirTriangles) {
   const Vec3 a{-3, 2, 2}, b{3, 2, 2.5}, c{3, -3, 2}, d{-3, -3, 2};
-  const Occluder veil = sheet({{-0.5, -0.5, 1}, {1, -0.25, 0.5}, {0.25, 1, 1.25}});
+  const Obstacle veil = sheet({{-0.5, -0.5, 1}, {1, -0.25, 0.5}, {0.25, 1, 1.25}});
   EXPECT_PRED2(agree, form_factor({{a, b, c, d}, {}}, {veil}),
                form_factor({{a, c, d}, {}}, {veil}) + form_factor({{a, b, c}, {}}, {veil}));
 }
@@ -157,7 +157,7 @@ TEST(Oracle, AgreesWithRays) {
   for (int scene = 0; scene < 6; ++scene) {
     Random random("rays" + std::to_string(scene));
     std::vector<Loop> triangles;
-    std::vector<Occluder> occluders;
+    std::vector<Obstacle> occluders;
     const auto corner = [&] { return Vec3{random.real(-2, 2), random.real(-2, 2), random.real(-1, 3)}; };
     for (int i = 0; i < 1 + 2 * scene; ++i) {
       triangles.push_back({corner(), corner(), corner()});

@@ -1,9 +1,8 @@
-#include "tests/geometry/placement.h"
+#include "src/stress/placement.h"
 
 namespace exitance {
-namespace {
 
-Placement rotation(const std::string& name, const Vec3& origin, double scale, Random& random) {
+Placement random_rotation(const std::string& name, const Vec3& origin, double scale, Random& random) {
   double q[4], square = 0;
   do {
     square = 0;
@@ -20,8 +19,6 @@ Placement rotation(const std::string& name, const Vec3& origin, double scale, Ra
           origin,
           scale};
 }
-
-}  // namespace
 
 Polygon Placement::operator()(Polygon polygon) const {
   for (Vec3& p : polygon.outer) p = (*this)(p);
@@ -40,10 +37,10 @@ std::vector<Placement> placements(std::string_view name) {
           {"tilted", u, v, w, near},
           {"tilted_far", u, v, w, far},
           {"tilted_2^-40", u, v, w, near, 0x1p-40},
-          rotation("rotated", near, 1, random),
-          rotation("rotated_far", far, 1, random),
-          rotation("rotated_1e-12", {}, 1e-12, random),
-          rotation("rotated_1e12", near, 1e12, random)};
+          random_rotation("rotated", near, 1, random),
+          random_rotation("rotated_far", far, 1, random),
+          random_rotation("rotated_1e-12", {}, 1e-12, random),
+          random_rotation("rotated_1e12", near, 1e12, random)};
 }
 
 }  // namespace exitance

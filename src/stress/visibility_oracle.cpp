@@ -1,4 +1,4 @@
-#include "tests/geometry/visibility_oracle.h"
+#include "src/stress/visibility_oracle.h"
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_set_2.h>
@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/math/constants/constants.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -171,12 +172,13 @@ bool covers(const ExactLoop& facet, bool solid, const HalfSpace& source_plane) {
   return !solid || plane_of(facet).normal * source_plane.normal < 0;
 }
 
-Region visible_part(const ExactLoop& source, const Chart& chart, const Point& x,
-                    const std::vector<Occluder>& occluders) {
+/// What the occluders hide of the source's plane within the cone over the source.
+Region hidden_part(const ExactLoop& source, const Chart& chart, const Point& x,
+                   const std::vector<Obstacle>& occluders) {
   const HalfSpace& plane = chart.plane;
   const auto cone = cone_over(source, x);
   std::vector<FlatPolygon> shadows;
-  for (const Occluder& occluder : occluders) {
+  for (const Obstacle& occluder : occluders) {
     for (const Polygon& face : occluder.faces) {
       for (const Loop& loop : cut_into_facets(face)) {
         const ExactLoop facet = exact(loop);
@@ -188,50 +190,71 @@ Region visible_part(const ExactLoop& source, const Chart& chart, const Point& x,
       }
     }
   }
-  Region visible(chart.flat(source));
   Region hidden;
   hidden.join(shadows.begin(), shadows.end());
-  visible.difference(hidden);
-  return visible;
+  return hidden;
+}
+
+/// Of a region of a facet's plane, seen from x.
+struct Measure {
+  Real contour = 0;        ///< 2 π F
+  Real area = 0;           ///< [m²]
+  Rational flat_area = 0;  ///< in the chart
+};
+
+Measure measure(const Region& region, const Chart& chart, const Point& x, const RealVector& unit_normal) {
+  // Counter-clockwise in the chart is so from the front, too, if the normal points up the chart's axis; seen from there
+  // the rotation is against the one Lambert's sum counts as positive.
+  const int side = chart.plane.normal[chart.axis] > 0 ? -1 : 1;
+  const RealVector facet_normal = real(chart.plane.normal);
+  const Real stretch = sqrt(dot(facet_normal, facet_normal)) / abs(real(chart.plane.normal[chart.axis]));
+  Measure sum;
+  std::vector<CGAL::Polygon_with_holes_2<Kernel>> parts;
+  region.polygons_with_holes(std::back_inserter(parts));
+  const auto add = [&](const FlatPolygon& loop) {  // holes are clockwise
+    sum.contour += side * contour_sum(loop, chart, x, unit_normal);
+    sum.flat_area += loop.area();
+  };
+  for (const auto& part : parts) {
+    add(part.outer_boundary());
+    for (const FlatPolygon& hole : part.holes()) add(hole);
+  }
+  sum.area = stretch * real(sum.flat_area);
+  return sum;
 }
 
 }  // namespace
 
-OracleAnswer oracle_form_factor(const Vec3& point, const Vec3& direction, const Polygon& source,
-                                const std::vector<Occluder>& occluders) {
-  const Point x = exact(point);
-  const Vector normal = exact(direction) - CGAL::ORIGIN;
+OracleAnswer oracle_form_factor(const PointQuestion& given) {
+  // CGAL's intervals overflow from 1e100 on. Powers of two round nothing.
+  const auto [question, exponent] = scaled_near_one(given);
+  const Point x = exact(question.point);
+  const Vector normal = exact(question.normal) - CGAL::ORIGIN;
   RealVector unit_normal = real(normal);
   const Real length = sqrt(dot(unit_normal, unit_normal));
   unit_normal = {unit_normal.x / length, unit_normal.y / length, unit_normal.z / length};
 
-  Real contour = 0, area = 0;
-  for (const Loop& loop : cut_into_facets(source)) {
+  Real contour = 0, area = 0, open_contour = 0;
+  bool is_all_seen = true;
+  for (const Loop& loop : cut_into_facets(question.source)) {
     const ExactLoop facet = exact(loop);
     const Chart chart(plane_of(facet));
     if (chart.plane.value(x) <= 0) continue;
     const ExactLoop above = clip(facet, {x, normal});
-    if (chart.flat(above).is_empty()) continue;
-
-    // Counter-clockwise in the chart is so from the front, too, if the normal points up the chart's axis; seen from
-    // there the rotation is against the one Lambert's sum counts as positive.
-    const int side = chart.plane.normal[chart.axis] > 0 ? -1 : 1;
-    const RealVector facet_normal = real(chart.plane.normal);
-    const Real stretch = sqrt(dot(facet_normal, facet_normal)) / abs(real(chart.plane.normal[chart.axis]));
-    const Region visible = visible_part(above, chart, x, occluders);
-    std::vector<CGAL::Polygon_with_holes_2<Kernel>> parts;
-    visible.polygons_with_holes(std::back_inserter(parts));
-    for (const auto& part : parts) {
-      contour += side * contour_sum(part.outer_boundary(), chart, x, unit_normal);
-      area += stretch * real(part.outer_boundary().area());
-      for (const FlatPolygon& hole : part.holes()) {  // clockwise
-        contour += side * contour_sum(hole, chart, x, unit_normal);
-        area += stretch * real(hole.area());
-      }
-    }
+    const FlatPolygon source = chart.flat(above);
+    if (source.is_empty()) continue;
+    Region visible(source);
+    const Measure open = measure(visible, chart, x, unit_normal);
+    visible.difference(hidden_part(above, chart, x, question.occluders));
+    const Measure seen = measure(visible, chart, x, unit_normal);
+    is_all_seen = is_all_seen && seen.flat_area == open.flat_area;
+    open_contour += open.contour;
+    contour += seen.contour;
+    area += seen.area;
   }
-  const Real F = contour / (2 * boost::math::constants::pi<Real>());
-  return {F.convert_to<long double>(), area.convert_to<long double>()};
+  const Real turn = 2 * boost::math::constants::pi<Real>();
+  return {Real(contour / turn).convert_to<long double>(), std::ldexp(area.convert_to<long double>(), 2 * exponent),
+          Real(open_contour / turn).convert_to<long double>(), is_all_seen};
 }
 
 }  // namespace exitance

@@ -1,5 +1,5 @@
 #pragma once
-// Where a test's geometry is put: maps that keep degenerate configurations exact, and maps that round them.
+// Where geometry is put: maps that keep degenerate configurations exact, and maps that round them.
 
 #include <cstdint>
 #include <random>
@@ -19,6 +19,7 @@ class Random {
     for (const char c : name) seed = (seed ^ static_cast<unsigned char>(c)) * 1099511628211u;
     bits_.seed(seed);
   }
+  explicit Random(std::uint64_t seed) : bits_(seed) {}
   int whole(int low, int high) { return low + static_cast<int>(bits_() % static_cast<std::uint64_t>(high - low + 1)); }
   double real(double low, double high) { return low + (high - low) * static_cast<double>(bits_() >> 11) * 0x1p-53; }
 
@@ -37,6 +38,9 @@ struct Placement {
   /// A plane's normal goes with the cofactors. All maps here keep orientation.
   Vec3 normal(const Vec3& n) const { return n.x * cross(v, w) + n.y * cross(w, u) + n.z * cross(u, v); }
 };
+
+/// A rotation drawn at random, all of them equally likely; its columns are rounded.
+Placement random_rotation(const std::string& name, const Vec3& origin, double scale, Random& random);
 
 /// The lattice itself, in tenths, tilted (as exact, but no plane is an axis'), rotated by a rotation drawn from the
 /// name (rounded), each also far from the origin, tiny and huge.

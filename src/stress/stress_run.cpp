@@ -1,0 +1,270 @@
+#include "src/stress/stress_run.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <tuple>
+
+#include "src/stress/shrinking.h"
+#include "src/stress/verdict.h"
+
+namespace exitance {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+const char* const kAnswer = "answer";
+const char* const kClosure = "closure";
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::uint64_t hash(const std::string& name) {
+  std::uint64_t h = 14695981039346656037u;  // FNV-1a
+  for (const char c : name) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return h;
+}
+
+/// A question and all that is drawn for it come from its name.
+struct Named {
+  std::string name;
+  std::size_t family = 0, departure = 0;
+};
+
+/// Something found wrong, before it is made small.
+struct Found {
+  std::uint64_t number = 0;
+  std::size_t contender = 0, what = 0;  ///< what: the property, or their number for the answer
+};
+
+class StressRun {
+ public:
+  explicit StressRun(const StressOptions& options) : options_(options), names_(property_names()) {
+    for (const QuestionFamily& family : question_families()) {
+      if (options.families.empty() || std::ranges::find(options.families, family.name) != options.families.end())
+        families_.push_back(&family);
+    }
+    for (const std::string& name : options.families) {
+      if (std::ranges::find(families_, name, [](const QuestionFamily* f) { return f->name; }) == families_.end())
+        throw std::invalid_argument(name + ": there is no such family of questions");
+    }
+    StressTally empty;
+    empty.properties.resize(names_.size());
+    tallies_.assign(options.contenders.size() * rows_per_contender(), empty);
+  }
+
+  StressReport run() {
+    const auto start = Clock::now();
+    constexpr std::uint64_t kBatch = 512;
+    StressReport report;
+    std::uint64_t done = 0;
+    while (done < options_.count) {
+      if (options_.stop && options_.stop()) {
+        report.complete = false;
+        break;
+      }
+      const std::uint64_t end = std::min(options_.count, done + kBatch);
+      tbb::parallel_for(tbb::blocked_range<std::uint64_t>(done, end, 8), [&](const auto& some) {
+        for (std::uint64_t k = some.begin(); k < some.end(); ++k) ask(options_.first + k);
+      });
+      done = end;
+      if (options_.progress)
+        options_.progress(static_cast<double>(done) / static_cast<double>(options_.count), "questions");
+    }
+    report.questions = done;
+    report.failures = failures();
+    for (std::size_t c = 0; c < options_.contenders.size(); ++c) {
+      for (std::size_t f = 0; f < families_.size(); ++f) {
+        for (std::size_t d = 0; d < departures().size(); ++d) {
+          report.rows.push_back(
+              {families_[f]->name, departures()[d].name, options_.contenders[c].name, tallies_[row(c, f, d)]});
+        }
+      }
+    }
+    report.seconds = seconds_since(start);
+    return report;
+  }
+
+ private:
+  std::size_t rows_per_contender() const { return families_.size() * departures().size(); }
+  std::size_t row(std::size_t contender, std::size_t family, std::size_t departure) const {
+    return contender * rows_per_contender() + family * departures().size() + departure;
+  }
+
+  Named named(std::uint64_t number) const {
+    const std::size_t family = number % families_.size(), departure = number / families_.size() % departures().size();
+    return {fmt::format("{}/{}/{}/{}", options_.seed, families_[family]->name, departures()[departure].name,
+                        number / rows_per_contender()),
+            family, departure};
+  }
+  DrawnQuestion drawn(const Named& what) const {
+    Random random(what.name);
+    return draw_question(*families_[what.family], departures()[what.departure], random);
+  }
+
+  std::optional<PropertyTrial> try_one(std::size_t property, const std::string& name, const PointContender& contender,
+                                       const PointQuestion& question, const Opinion& opinion) const {
+    if (names_[property] == kClosure) {
+      if (contender.is_proven) return try_closure(question);
+      return std::nullopt;
+    }
+    Random random(name + "/" + names_[property]);
+    const auto ask = [&](const PointQuestion& q) { return contender.ask(q, hash(name)); };
+    return try_property(properties()[property], question, opinion, ask, random);
+  }
+
+  void ask(std::uint64_t number) {
+    const Named what = named(number);
+    const PointQuestion question = drawn(what).question;
+    std::optional<OracleAnswer> truth;
+    if (options_.oracle) truth = oracle_form_factor(question);
+    for (std::size_t c = 0; c < options_.contenders.size(); ++c) {
+      const PointContender& contender = options_.contenders[c];
+      StressTally tally;
+      tally.properties.resize(names_.size());
+      std::vector<std::size_t> wrong;
+      const auto start = Clock::now();
+      const Opinion opinion = contender.ask(question, hash(what.name));
+      tally.seconds = seconds_since(start);
+      tally.questions = 1;
+      tally.stages = opinion.stages;
+      tally.extended = opinion.extended;
+      tally.worst_margin = opinion.margin;
+      if (truth) {
+        (truth->visible_area == 0 ? tally.none : truth->is_all_seen ? tally.all : tally.some) = 1;
+        const Verdict verdict = judge(opinion, *truth);
+        tally.wrong = verdict.is_wrong ? 1 : 0;
+        tally.worst_error = verdict.error;
+        tally.worst_relative_error = verdict.relative_error;
+        if (verdict.is_wrong) wrong.push_back(names_.size());
+      }
+      for (std::size_t p = 0; options_.properties && contender.has_properties && p < names_.size(); ++p) {
+        const auto trial = try_one(p, what.name, contender, question, opinion);
+        if (!trial) continue;
+        tally.properties[p] = {1, trial->holds() ? 0u : 1u, trial->defect};
+        if (!trial->holds()) wrong.push_back(p);
+      }
+      const std::lock_guard lock(mutex_);
+      tallies_[row(c, what.family, what.departure)].add(tally);
+      for (const std::size_t w : wrong) found_.push_back({number, c, w});
+    }
+  }
+
+  /// The failures that are kept, small.
+  std::vector<StressFailure> failures() {
+    std::ranges::sort(found_, [](const Found& a, const Found& b) {
+      return std::tie(a.number, a.contender, a.what) < std::tie(b.number, b.contender, b.what);
+    });
+    std::set<std::tuple<std::size_t, std::size_t>> had;
+    std::vector<Found> kept;
+    for (const Found& f : found_) {
+      if (kept.size() == options_.failures_kept) break;
+      const bool is_first = had.emplace(f.contender, named(f.number).family).second;
+      if (is_first || options_.contenders[f.contender].is_proven) kept.push_back(f);
+    }
+    std::vector<StressFailure> failures(kept.size());
+    tbb::parallel_for(std::size_t{0}, kept.size(), [&](std::size_t k) { failures[k] = smallest(kept[k]); });
+    return failures;
+  }
+
+  StressFailure smallest(const Found& found) const {
+    const Named what = named(found.number);
+    const DrawnQuestion drawn_question = drawn(what);
+    const PointContender& contender = options_.contenders[found.contender];
+    const bool is_answer = found.what == names_.size();
+    const auto fails = [&](const PointQuestion& question) {
+      try {
+        const Opinion opinion = contender.ask(question, hash(what.name));
+        if (is_answer) return judge(opinion, oracle_form_factor(question)).is_wrong;
+        const auto trial = try_one(found.what, what.name, contender, question, opinion);
+        return trial && !trial->holds();
+      } catch (const std::exception&) {
+        return false;  // another failure than this
+      }
+    };
+    StressFailure failure{.question = what.name + " " + drawn_question.placement,
+                          .contender = contender.name,
+                          .what = is_answer ? kAnswer : names_[found.what],
+                          .asked = {shrink(drawn_question.question, fails)},
+                          .F = 0,
+                          .truth = {}};
+    const PointQuestion question = failure.asked[0];
+    failure.F = contender.ask(question, hash(what.name)).F;
+    if (options_.oracle) failure.truth = static_cast<double>(oracle_form_factor(question).F);
+    if (!is_answer && names_[found.what] != kClosure) {
+      Random random(what.name + "/" + names_[found.what]);
+      const auto forms = properties()[found.what].forms(question, random);
+      failure.asked.insert(failure.asked.end(), forms.begin(), forms.end());
+    }
+    return failure;
+  }
+
+  const StressOptions& options_;
+  std::vector<std::string> names_;  // of properties
+  std::vector<const QuestionFamily*> families_;
+  std::mutex mutex_;
+  std::vector<StressTally> tallies_;
+  std::vector<Found> found_;
+};
+
+}  // namespace
+
+std::vector<std::string> property_names() {
+  std::vector<std::string> names;
+  for (const Property& property : properties()) names.push_back(property.name);
+  names.emplace_back(kClosure);
+  return names;
+}
+
+void StressTally::add(const StressTally& other) {
+  questions += other.questions;
+  none += other.none;
+  some += other.some;
+  all += other.all;
+  wrong += other.wrong;
+  worst_error = std::max(worst_error, other.worst_error);
+  worst_relative_error = std::max(worst_relative_error, other.worst_relative_error);
+  worst_margin = std::max(worst_margin, other.worst_margin);
+  stages += other.stages;
+  extended += other.extended;
+  seconds += other.seconds;
+  properties.resize(std::max(properties.size(), other.properties.size()));
+  for (std::size_t p = 0; p < other.properties.size(); ++p) {
+    properties[p].tried += other.properties[p].tried;
+    properties[p].broken += other.properties[p].broken;
+    properties[p].worst_defect = std::max(properties[p].worst_defect, other.properties[p].worst_defect);
+  }
+}
+
+std::uint64_t StressTally::tried() const {
+  std::uint64_t sum = 0;
+  for (const PropertyTally& p : properties) sum += p.tried;
+  return sum;
+}
+
+std::uint64_t StressTally::broken() const {
+  std::uint64_t sum = 0;
+  for (const PropertyTally& p : properties) sum += p.broken;
+  return sum;
+}
+
+StressTally StressReport::total(const std::string& contender) const {
+  StressTally sum;
+  for (const StressRow& row : rows) {
+    if (row.contender == contender) sum.add(row.tally);
+  }
+  return sum;
+}
+
+StressReport run_stress(const StressOptions& options) {
+  return StressRun(options).run();
+}
+
+}  // namespace exitance

@@ -1,0 +1,89 @@
+#pragma once
+// Many degenerate questions, put to several ways to answer them: what is wrong of which, by family and departure.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/output/progress.h"
+#include "src/stress/point_contender.h"
+#include "src/stress/property.h"
+#include "src/stress/question_family.h"
+
+namespace exitance {
+
+struct StressOptions {
+  std::vector<std::string> families;  ///< empty: all
+  std::uint64_t count = 1000;         ///< of questions, spread evenly over families and departures
+  std::uint64_t first = 0;            ///< number of the first question
+  std::uint64_t seed = 1;
+  std::vector<PointContender> contenders;
+  bool oracle = true;      ///< compare with what CGAL's Boolean operations say
+  bool properties = true;  ///< of contenders that have them, and closure of the exact one
+  std::size_t failures_kept = 1000;
+  Progress progress;
+  std::function<bool()> stop;  ///< asked between questions; true ends the run
+};
+
+/// How a property fared.
+struct PropertyTally {
+  std::uint64_t tried = 0, broken = 0;
+  double worst_defect = 0;
+};
+
+/// Of one family, departure and contender.
+struct StressTally {
+  std::uint64_t questions = 0;
+  std::uint64_t none = 0, some = 0, all = 0;  ///< how much is seen, as the oracle says
+  /// Answers that are further from the truth than their margin, or say of what is hidden that it is seen, or that
+  /// something is open, hidden or away that is not.
+  std::uint64_t wrong = 0;
+  double worst_error = 0;           ///< of F, absolute
+  double worst_relative_error = 0;  ///< where F ≥ 1e-15
+  double worst_margin = 0;
+  StageCounts stages;
+  std::uint64_t extended = 0;             ///< facets that took more than double precision
+  double seconds = 0;                     ///< that the answers took, properties apart
+  std::vector<PropertyTally> properties;  ///< in the order of property_names()
+
+  void add(const StressTally& other);
+  std::uint64_t tried() const;
+  std::uint64_t broken() const;
+};
+
+/// Of properties(), and "closure".
+std::vector<std::string> property_names();
+
+struct StressRow {
+  std::string family, departure, contender;
+  StressTally tally;
+};
+
+/// A question that was answered wrong, or a property of it that does not hold, as small as it can be made.
+struct StressFailure {
+  std::string question;  ///< seed/family/departure/number, and its placement
+  std::string contender;
+  std::string what;                  ///< "answer", or the property
+  std::vector<PointQuestion> asked;  ///< the question, and the forms of it that the property compares it with
+  double F = 0;                      ///< what the contender says of the first
+  std::optional<double> truth;       ///< what the oracle says of it
+};
+
+struct StressReport {
+  std::vector<StressRow> rows;          ///< by contender, family, departure
+  std::vector<StressFailure> failures;  ///< in the order of the questions
+  std::uint64_t questions = 0;
+  double seconds = 0;
+  bool complete = true;  ///< not stopped
+
+  StressTally total(const std::string& contender) const;
+};
+
+/// The same options give the same report, times apart, for any number of threads. Of contenders that prove nothing only
+/// the first failure of each family is kept, for they have many. Throws std::invalid_argument on a family that there is
+/// not.
+StressReport run_stress(const StressOptions& options);
+
+}  // namespace exitance

@@ -1,0 +1,28 @@
+#include "src/stress/verdict.h"
+
+#include <cmath>
+
+namespace exitance {
+
+Verdict judge(const Opinion& opinion, const OracleAnswer& truth) {
+  constexpr long double kLeast = 1e-15L;
+  const long double error = std::fabs(opinion.F - truth.F);
+  Verdict verdict{error > static_cast<long double>(opinion.margin) || std::isnan(opinion.F), static_cast<double>(error),
+                  truth.F >= kLeast ? static_cast<double>(error / truth.F) : 0};
+  switch (opinion.visibility) {
+    case Visibility::away:
+      verdict.is_wrong = verdict.is_wrong || truth.F_open != 0;
+      break;
+    case Visibility::open:
+      verdict.is_wrong = verdict.is_wrong || !truth.is_all_seen;
+      break;
+    case Visibility::blocked:
+      verdict.is_wrong = verdict.is_wrong || truth.visible_area != 0;
+      break;
+    case Visibility::partial:
+      break;
+  }
+  return verdict;
+}
+
+}  // namespace exitance

@@ -1,0 +1,34 @@
+#include "tests/fuzz/memory_request.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+std::atomic<std::size_t> largest{0};
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  if (size > largest) largest = size;
+  if (void* p = std::malloc(size > 0 ? size : 1)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+
+namespace exitance {
+
+std::size_t largest_memory_request() {
+  return largest;
+}
+void forget_memory_requests() {
+  largest = 0;
+}
+
+}  // namespace exitance

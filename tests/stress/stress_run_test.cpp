@@ -1,0 +1,119 @@
+#include "src/stress/stress_run.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "src/stress/verdict.h"
+
+namespace exitance {
+namespace {
+
+StressOptions asking(std::vector<std::string> names, std::uint64_t count) {
+  StressOptions options;
+  options.count = count;
+  for (const std::string& name : names) options.contenders.push_back(point_contender_named(name));
+  return options;
+}
+
+TEST(StressRun, FindsNothingWrongOfTheExactContender) {
+  const StressReport report = run_stress(asking({"exact"}, 174));
+  const StressTally total = report.total("exact");
+  EXPECT_EQ(total.questions, 174u);
+  EXPECT_EQ(total.none + total.some + total.all, 174u);
+  EXPECT_GT(total.none, 0u);
+  EXPECT_GT(total.all, 0u);
+  EXPECT_EQ(total.wrong, 0u);
+  EXPECT_EQ(total.broken(), 0u);
+  EXPECT_LE(total.worst_error, 1e-13);
+  EXPECT_LE(total.worst_relative_error, 1e-10);
+  EXPECT_TRUE(report.failures.empty());
+  for (const PropertyTally& property : total.properties) EXPECT_GT(property.tried, 0u);
+  EXPECT_GT(total.stages.exact, 0u);
+}
+
+/// Answers, and takes all that is seen for hidden where that is next to nothing; its bound claims the contrary.
+PointContender careless() {
+  const auto exact = point_contender_named("exact");
+  return {"careless",
+          [exact](const PointQuestion& q, std::uint64_t seed) {
+            Opinion opinion = exact.ask(q, seed);
+            if (opinion.F < 1e-7) opinion = {0, opinion.margin, Visibility::blocked, {}, 0};
+            return opinion;
+          },
+          true, false};
+}
+
+TEST(StressRun, FindsACarelessContender) {
+  StressOptions options = asking({}, 180);
+  options.families = {"gap"};
+  options.contenders = {careless()};
+  options.failures_kept = 3;
+  const StressReport report = run_stress(options);
+  EXPECT_GT(report.total("careless").wrong, 5u);
+  ASSERT_EQ(report.failures.size(), 3u);
+  for (const StressFailure& failure : report.failures) {
+    EXPECT_EQ(failure.what, "answer");
+    EXPECT_EQ(failure.F, 0);
+    const PointQuestion& question = failure.asked.at(0);
+    EXPECT_TRUE(judge(careless().ask(question, 0), oracle_form_factor(question)).is_wrong) << "replays";
+    EXPECT_LE(question.occluders.size(), 4u);
+  }
+}
+
+TEST(StressRun, SmallFailuresOfPlainDoublesReplay) {
+  StressOptions options = asking({"plain-double"}, 60);
+  options.families = {"coplanar_contact", "duplicate"};
+  const StressReport report = run_stress(options);
+  ASSERT_FALSE(report.failures.empty());
+  for (const StressFailure& failure : report.failures) {
+    if (failure.what != "answer") continue;
+    const PointQuestion& question = failure.asked.at(0);
+    const Opinion plain = point_contender_named("plain-double").ask(question, 0);
+    EXPECT_TRUE(judge(plain, oracle_form_factor(question)).is_wrong) << failure.question;
+  }
+}
+
+TEST(StressRun, IsTheSameForAnyNumberOfThreads) {
+  const auto by = [](std::size_t threads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    return run_stress(asking({"exact", "plain-double", "rays:16"}, 58));
+  };
+  const StressReport one = by(1), three = by(3);
+  ASSERT_EQ(one.rows.size(), three.rows.size());
+  for (std::size_t r = 0; r < one.rows.size(); ++r) {
+    const StressTally &a = one.rows[r].tally, &b = three.rows[r].tally;
+    EXPECT_EQ(a.wrong, b.wrong);
+    EXPECT_EQ(a.worst_error, b.worst_error);
+    EXPECT_EQ(a.stages.exact, b.stages.exact);
+    EXPECT_EQ(a.broken(), b.broken());
+    for (std::size_t p = 0; p < a.properties.size(); ++p)
+      EXPECT_EQ(a.properties[p].worst_defect, b.properties[p].worst_defect);
+  }
+  ASSERT_EQ(one.failures.size(), three.failures.size());
+  for (std::size_t k = 0; k < one.failures.size(); ++k) {
+    EXPECT_EQ(one.failures[k].question, three.failures[k].question);
+    EXPECT_EQ(one.failures[k].F, three.failures[k].F);
+  }
+}
+
+TEST(StressRun, GoesOnWhereAnotherEnded) {
+  StressOptions options = asking({"exact"}, 24);
+  options.oracle = false;
+  options.families = {"horizon", "near"};
+  const StressTally whole = run_stress(options).total("exact");
+  options.count = 12;
+  StressTally parts = run_stress(options).total("exact");
+  options.first = 12;
+  parts.add(run_stress(options).total("exact"));
+  EXPECT_EQ(whole.stages.filter, parts.stages.filter);
+  EXPECT_EQ(whole.tried(), parts.tried());
+}
+
+TEST(StressRun, RefusesAFamilyThatThereIsNot) {
+  StressOptions options = asking({"exact"}, 1);
+  options.families = {"gap", "gaps"};
+  EXPECT_THROW(run_stress(options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace exitance
