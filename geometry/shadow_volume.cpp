@@ -49,8 +49,15 @@ void ShadowVolume::set_shooter(const ShaftEnd& shooter) {
   }
   shooter_ = {shooter.facet, loop_};
   const auto coplanar = soup.coplanar(shooter.facet);
+  Box box;
+  for (const Vec3& v : loop_) box.extend(v);
+  const auto reaches_shooter = [&](const Facet& facet) {
+    Box of_facet;
+    for (const Corner& c : soup.corners(facet)) of_facet.extend(c.at);
+    return of_facet.overlaps(box);
+  };
   covers_shooter_ = std::any_of(coplanar.begin(), coplanar.end(), [&](std::uint32_t t) {
-    return caster_.has(t) && soup.covers(t, shooter.facet);
+    return caster_.has(t) && soup.covers(t, shooter.facet) && reaches_shooter(soup.facets()[t]);
   });
 
   region_.clear();

@@ -82,6 +82,9 @@ class Dynamic {
                     "File (.h5) that keeps the converged references, for other runs of the same frames");
     memory_limit_.add_to(verb);
     verb.add_flag("!--no-images", images_, "Leave out pictures and VTP files");
+    verb.add_option("--image-size", image_size_, "Width and height of the pictures in pixels")
+        ->check(whole_number_between(1, 8192))
+        ->capture_default_str();
     patch_size_ = verb.add_option("--patch-size", options_.mesh.patch_size, "Longest edge of a patch [m]")
                       ->check(number_between(0));
     elements_ = verb.add_option("--elements", options_.mesh.elements_per_edge, "Elements along the edge of a patch")
@@ -278,7 +281,7 @@ class Dynamic {
                           : given.scene.camera       ? *given.scene.camera
                                                      : default_camera(faces.points(), is_closed(given.scene));
     const std::string name = fmt::format("frame_{:03}", frames_.size());
-    write_png(draft_ / (name + ".png"), picture(state, B, camera));
+    write_png(draft_ / (name + ".png"), picture(state, B, camera, {image_size_, image_size_}));
     VtkArray exitance{"B", given.scene.unit, {}, B};
     if (state.bands() == 3) exitance.components = {"R", "G", "B"};
     for (std::uint32_t b = 0; state.bands() != 1 && state.bands() != 3 && b < state.bands(); ++b)
@@ -292,6 +295,7 @@ class Dynamic {
   std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", replay_, reference_file_,
                      folder_;
   MemoryLimit memory_limit_;
+  std::uint32_t image_size_ = 800;
   std::optional<std::uint64_t> budget_shots_;
   std::optional<double> budget_ms_, time_limit_;
   std::optional<std::size_t> threads_;

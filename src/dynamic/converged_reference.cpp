@@ -101,13 +101,14 @@ ConvergenceError convergence_error(const SceneVersion& version, std::uint32_t ba
     change[e] = std::fabs(Y(reference, e) - Y(was, e));
   }
   const auto error = [&](std::span<const std::uint32_t> of) {
-    double missed = 0, all = 0;
+    double missed = 0, all = 0, all_before = 0;
     for (const std::uint32_t e : of) {
       const double area = version.mesh().elements[e].area, y = Y(reference, e), d = y - Y(current, e);
       missed += area * d * d;
       all += area * y * y;
+      all_before += area * Y(was, e) * Y(was, e);
     }
-    return missed == 0 ? 0 : std::sqrt(missed / all);
+    return missed == 0 ? 0 : std::sqrt(missed / (all > 0 ? all : all_before));
   };
   ConvergenceError result;
   result.all = error(elements);

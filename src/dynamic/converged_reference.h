@@ -39,7 +39,8 @@ class FrameReferences {
 
 /// Equation 7 of George, Sillion and Greenberg 1990 over elements that are there, and over the 1 % of them (at least
 /// one) whose luminance changed most, |y_ref − y_before|; of equals the first. by element and band: `reference`, what
-/// it `was` before (may be shorter: 0), and `current`. 0 / 0 is 0.
+/// it `was` before (may be shorter: 0), and `current`. 0 / 0 is 0; where all of the reference
+/// is 0 (what has become dark), errors are relative to what it was.
 struct ConvergenceError {
   double all = 0, worst_1_percent = 0;
 };

@@ -4,7 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 #include "src/dynamic/form_factor_column.h"
 
@@ -93,22 +93,31 @@ double entry(const FormFactorColumn& column, std::uint32_t element) {
                                                       : 0.0;
 }
 
-/// Splits items into those of the objects and others.
-void split_items(const SceneVersion& version, std::span<const std::uint32_t> objects,
-                 std::span<const std::uint32_t> items, bool& some_of_objects, std::vector<std::uint32_t>& others) {
-  const PolygonSoup& soup = version.soup();
+bool is_of(const SceneVersion& version, std::span<const std::uint32_t> objects, std::uint32_t facet) {
+  return std::ranges::any_of(objects, [&](std::uint32_t object) {
+    const ObjectSlot& slot = version.slot(object);
+    return slot.present && slot.facet_first <= facet && facet < slot.facet_last;
+  });
+}
+
+std::uint32_t facet_of(const PolygonSoup& soup, std::uint32_t item) {
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
-  some_of_objects = false;
-  others.clear();
-  for (const std::uint32_t item : items) {
-    const std::uint32_t facet = item < facets ? item : soup.shells()[item - facets].facets.front();
-    const bool of_object = std::ranges::any_of(objects, [&](std::uint32_t object) {
-      const ObjectSlot& slot = version.slot(object);
-      return slot.present && slot.facet_first <= facet && facet < slot.facet_last;
-    });
-    some_of_objects = some_of_objects || of_object;
-    if (!of_object) others.push_back(item);
+  return item < facets ? item : soup.shells()[item - facets].facets.front();
+}
+
+/// An item of one version's index in that of another, of an object that is the same in both.
+std::uint32_t same_item(const SceneVersion& in, std::uint32_t item, const SceneVersion& other) {
+  const std::uint32_t facet = facet_of(in.soup(), item);
+  for (std::uint32_t object = 0; object < in.objects(); ++object) {
+    const ObjectSlot &slot = in.slot(object), &there = other.slot(object);
+    if (!slot.present || facet < slot.facet_first || facet >= slot.facet_last) continue;
+    const PolygonSoup& soup = other.soup();
+    const std::uint32_t same = facet - slot.facet_first + there.facet_first, shell = soup.facets()[same].shell;
+    // Beside a new neighbour a solid may be one no longer; the facet is there all the same.
+    const bool is_shell = item != facet && shell != kNone && soup.shells()[shell].convex;
+    return is_shell ? static_cast<std::uint32_t>(soup.facets().size()) + shell : same;
   }
+  return item;
 }
 
 }  // namespace
@@ -119,7 +128,7 @@ struct VersionDifference::Scratch {
 
   PatchShade before, after;
   Screens screens;
-  std::vector<std::uint32_t> stays_before, stays;  ///< items of either index that stand between and do not change
+  std::vector<std::uint32_t> stays, stays_before;  ///< items of either index that stand between and do not change
 };
 
 VersionDifference::VersionDifference(std::shared_ptr<const SceneVersion> before,
@@ -193,25 +202,42 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
                                           Scratch& scratch, std::span<FormFactorChange> changes,
                                           ChangeWork& work) const {
   PatchSight &sight_before = before_->sight(), &sight_after = after_->sight();
-  bool was_between = false, is_between = false;
-  sight_before.set(receiver, patch);
-  split_items(*before_, objects_, sight_before.between(), was_between, scratch.stays_before);
-  sight_after.set(receiver, patch);
-  split_items(*after_, objects_, sight_after.between(), is_between, scratch.stays);
-  if (!was_between && !is_between) return;
-  if (!sight_before.sees() && !sight_after.sees()) return;
   scratch.before.set_patch(patch);
   scratch.after.set_patch(patch);
+  bool looks = false, looked_before = false;
+  const auto look = [&] {
+    if (std::exchange(looks, true)) return;
+    sight_after.set(receiver, patch);
+    scratch.stays.clear();
+    scratch.stays_before.clear();
+    for (const std::uint32_t item : sight_after.between()) {
+      if (is_of(*after_, objects_, facet_of(after_->soup(), item))) continue;
+      scratch.stays.push_back(item);
+      scratch.stays_before.push_back(same_item(*after_, item, *before_));
+    }
+  };
   for (FormFactorChange& c : changes) {
     ++work.candidates;
-    const Shade was = was_between ? scratch.before.of(c.element, scratch.stays_before) : Shade::outside,
-                is = is_between ? scratch.after.of(c.element, scratch.stays) : Shade::outside;
+    // The objects by themselves first, as that is soon done.
+    Shade was = scratch.before.of(c.element, {}), is = scratch.after.of(c.element, {});
     if (was == Shade::outside && is == Shade::outside) continue;
     if (was == Shade::umbra && is == Shade::umbra) {
       ++work.kept;
       continue;
     }
-    if (scratch.screens.hide(patch, c.element, scratch.stays)) continue;
+    if (known != nullptr) c.before = entry(*known, c.element);
+    // Where no old shape hides anything new ones can only take: what is not seen before is not seen after; and the
+    // other way round.
+    if (known != nullptr && was == Shade::outside && c.before == 0) continue;  // 0 after, too
+    look();
+    if (!scratch.stays.empty()) {
+      if (was != Shade::outside) was = scratch.before.of(c.element, scratch.stays_before);
+      if (is != Shade::outside) is = scratch.after.of(c.element, scratch.stays);
+      if ((was == Shade::outside && is == Shade::outside) || scratch.screens.hide(patch, c.element, scratch.stays)) {
+        c.after = c.before;
+        continue;
+      }
+    }
     const auto F = [&](PatchSight& sight, Shade shade) {
       if (shade == Shade::umbra || !sight.sees()) return 0.0;
       ++c.tests;
@@ -219,14 +245,16 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
       c.error += f.error;
       return f.F;
     };
-    const auto F_before = [&] { return known != nullptr ? entry(*known, c.element) : F(sight_before, was); };
-    // Where no old shape hides anything new ones can only take: what is not seen before is not seen after; and the
-    // other way round.
+    const auto look_before = [&] {
+      if (known != nullptr) return;
+      if (!std::exchange(looked_before, true)) sight_before.set(receiver, patch);
+      c.before = F(sight_before, was);
+    };
     if (is == Shade::outside && known == nullptr) {
       c.after = F(sight_after, is);
-      if (c.after > 0) c.before = F_before();
+      if (c.after > 0) look_before();
     } else {
-      c.before = F_before();
+      look_before();
       if (was != Shade::outside || c.before > 0) c.after = F(sight_after, is);
     }
   }

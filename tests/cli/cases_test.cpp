@@ -230,13 +230,13 @@ TEST_F(Cases, DynamicSolvesTheRedistributionEquation) {
     return f["F"].get<std::vector<std::vector<double>>>();
   };
   const auto F = F_of(false), F_after = F_of(true);
-  const auto solved = [](const auto& F, const std::vector<double>& E, const std::vector<double>& rho,
+  const auto solved = [](const auto& f, const std::vector<double>& emitted, const std::vector<double>& reflectance,
                          std::size_t absent) {
     std::vector<std::vector<long double>> A(4, std::vector<long double>(4));
     std::vector<long double> b(4);
     for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t j = 0; j < 4; ++j) A[i][j] = (i == j ? 1.0L : 0.0L) - rho[i] * F[i][j];
-      b[i] = i == absent ? 0 : E[i];
+      for (std::size_t j = 0; j < 4; ++j) A[i][j] = (i == j ? 1.0L : 0.0L) - reflectance[i] * f[i][j];
+      b[i] = i == absent ? 0 : emitted[i];
     }
     return eliminate(A, b);
   };

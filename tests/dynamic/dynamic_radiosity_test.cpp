@@ -97,7 +97,7 @@ TEST(FormFactorColumn, EqualsTheRowsThatLookFromEachPoint) {
   std::reverse(frame.polygon.holes[0].begin(), frame.polygon.holes[0].end());
   scene.surfaces.push_back(frame);
   expect_columns_equal_rows(scene, {0.7, 2});
-  expect_columns_equal_rows(make_furnished_room(60, 3), {1.5, 1});
+  expect_columns_equal_rows(make_furnished_room(100, 3), {2.5, 1});
 }
 
 TEST(DynamicRadiosity, NothingDependsOnWhichColumnsAreKept) {
