@@ -78,7 +78,9 @@ TEST(LinkSight, IsNeverWronglyOpenOrBlocked) {
         if (s.state == Sight::State::partial) {
           const Sight alone = step == 0 ? s : sight.between_roots(p, q);
           // What touches a shaft's boundary but for rounding is another matter (LinkSight).
-          if (k % 2 == 1 || degrees == 0) ASSERT_TRUE(std::ranges::equal(sight.items(s), sight.items(alone)));
+          if (degrees == 0) {
+            ASSERT_TRUE(std::ranges::equal(sight.items(s), sight.items(alone)));
+          }
           if (step > 0) sight.forget(alone);
         }
         ++(s.state == Sight::State::open ? open : s.state == Sight::State::blocked ? blocked : partial);
@@ -91,7 +93,8 @@ TEST(LinkSight, IsNeverWronglyOpenOrBlocked) {
           const bool hidden = crosses_a_box(straight, back(a + 1e-7 * ab), back(b - 1e-7 * ab));
           ASSERT_EQ(hidden, s.state == Sight::State::blocked) << k << ", " << pair << ", " << step;
         }
-        const double value = s.state == Sight::State::open ? sight.form_factor(p, q) : sight.visible_form_factor(p, q, s);
+        const double value =
+            s.state == Sight::State::open ? sight.form_factor(p, q) : sight.visible_form_factor(p, q, s);
         std::vector<NodePoint> points;
         node_points(to, 2, points);
         double searched = 0;
