@@ -254,7 +254,7 @@ void Updater::update(std::uint32_t r, LinkIndex& links, NodeRadiosity* differenc
     } else {
       const bool forced = task_.any_stale && std::ranges::any_of(old, [](const Link& link) { return link.stale; });
       if (!forced && !shadows_->may_change(r, s)) continue;
-      if (only_significant() && old.front().energy <= task_.B_eps) {
+      if (only_significant() && old.front().energy < task_.B_eps) {
         stale.push_back(first);
         ++work_.skipped;
         continue;
@@ -315,11 +315,11 @@ void Updater::visit(std::span<const Link> old, const Above& above, bool root) {
     if (!face_each_other(tree_.node(pair.receiver), tree_.node(pair.source), task_.now->soup())) return;
     F = sight_.form_factor(pair.receiver, pair.source);
     const double most = std::max(energy(pair, F), task_.luminance[pair.source] * link.transfer());
-    if (only_significant() && !link.ghost && most <= task_.B_eps) return leave_stale();
+    if (only_significant() && !link.ghost && most < task_.B_eps) return leave_stale();
     find_sight();
     here.affected = evaluate = may_change = true;
   } else {
-    if (only_significant() && link.energy <= task_.B_eps) return leave_stale();
+    if (only_significant() && link.energy < task_.B_eps) return leave_stale();
     const bool blocked_above = !root && above.sight.state == Sight::State::blocked;
     const bool has_changed = task_.before != nullptr;
     if (has_changed && !blocked_above) {
@@ -352,13 +352,14 @@ void Updater::visit(std::span<const Link> old, const Above& above, bool root) {
       forget();
       return copy(old);
     }
-    if (tests_all()) F = sight_.form_factor(pair.receiver, pair.source);
+    // What was left stale may have moved then.
+    if (tests_all() || here.forced) F = sight_.form_factor(pair.receiver, pair.source);
     if (only_significant() && evaluate && !link.ghost) {
       // What moved in can only hide, what moved away only reveal.
       const double v = link.visibility;
       const bool may_hide = touched || blocked_above || here.forced, may_reveal = touched_before || here.forced;
       const double most = std::max(may_hide ? v : 0, may_reveal ? 1 - v : 0);
-      if (most * energy(pair, F) <= task_.B_eps) return leave_stale();
+      if (most * energy(pair, F) < task_.B_eps) return leave_stale();
     }
     changed_ = changed_ || evaluate;
   }
@@ -409,19 +410,6 @@ void Updater::visit(std::span<const Link> old, const Above& above, bool root) {
 
 /// Appends the links between two patches that had none.
 void Updater::grow_roots(const Pair& pair) {
-  if (only_significant()) {
-    const double F = sight_.form_factor(pair.receiver, pair.source);
-    if (energy(pair, F) <= task_.B_eps) {
-      Link unseen = ghost(pair, {}, F, {});
-      unseen.ghost = unseen.open = false;
-      unseen.visibility = 0;
-      unseen.energy = energy(pair, F);
-      unseen.stale = true;
-      ++work_.skipped;
-      out_.push_back(unseen);
-      return;
-    }
-  }
   const Sight sight = sight_.between_roots(pair.receiver, pair.source);
   grow(pair, {}, sight);
   sight_.forget(sight);

@@ -210,6 +210,7 @@ TEST(LinkedRadiosity, ObjectsComeAndGo) {
     options.B_eps = 0;
     LinkedRadiosity links(room_with_things(), options);
     links.build();
+    SCOPED_TRACE(static_cast<int>(method));
     const std::vector<double> before(links.radiosity().B().begin(), links.radiosity().B().end());
     std::vector<Edit> edits(2);
     edits[0].operation = edits[1].operation = Operation::remove;
