@@ -60,7 +60,17 @@ SightWork& SightWork::operator+=(const SightWork& other) {
 }
 
 LinkSight::LinkSight(const PatchTree& tree, const Obstacles& obstacles, unsigned per_edge)
-    : tree_(tree), obstacles_(obstacles), per_edge_(per_edge), shaft_(obstacles.soup()), view_(obstacles.soup()) {}
+    : tree_(tree), obstacles_(obstacles), per_edge_(per_edge), shaft_(obstacles.soup()), view_(obstacles.soup()) {
+  for (std::uint32_t object = 0; object < obstacles.objects(); ++object)
+    facet_offset_.push_back(obstacles.facets_of(object).first - tree.facet_first(object));
+}
+
+void LinkSight::set_shaft(std::uint32_t receiver, std::uint32_t source) {
+  ShaftEnd to = shaft_end(tree_.node(receiver)), from = shaft_end(tree_.node(source));
+  to.facet += facet_offset_[tree_.object_of(receiver)];
+  from.facet += facet_offset_[tree_.object_of(source)];
+  shaft_.reset(to, from);
+}
 
 /// Of the items, what enters the shaft as it is set.
 Sight LinkSight::select(std::span<const std::uint32_t> items) {
@@ -82,7 +92,7 @@ Sight LinkSight::select(std::span<const std::uint32_t> items) {
 Sight LinkSight::between_roots(std::uint32_t receiver, std::uint32_t source) {
   const Lap lap(work_.seconds_shafts);
   ++work_.shaft_tests;
-  shaft_.reset(shaft_end(tree_.node(receiver)), shaft_end(tree_.node(source)));
+  set_shaft(receiver, source);
   const Shaft::Overlap overlap = shaft_.find_occluders(found_);
   Sight sight;
   sight.first = items_.size();
@@ -97,7 +107,7 @@ Sight LinkSight::between_roots(std::uint32_t receiver, std::uint32_t source) {
 Sight LinkSight::between_roots(std::uint32_t receiver, std::uint32_t source, std::span<const std::uint32_t> items) {
   const Lap lap(work_.seconds_shafts);
   ++work_.shaft_tests;
-  shaft_.reset(shaft_end(tree_.node(receiver)), shaft_end(tree_.node(source)));
+  set_shaft(receiver, source);
   return select(items);
 }
 
@@ -105,7 +115,7 @@ Sight LinkSight::between(std::uint32_t receiver, std::uint32_t source, const Sig
   if (parent.state != Sight::State::partial) return {parent.state, items_.size(), 0};
   const Lap lap(work_.seconds_shafts);
   ++work_.shaft_tests;
-  shaft_.reset(shaft_end(tree_.node(receiver)), shaft_end(tree_.node(source)));
+  set_shaft(receiver, source);
   return select(items(parent));
 }
 

@@ -25,6 +25,7 @@ class Obstacles {
   std::uint32_t object_of_item(std::uint32_t item) const { return object_of_item_[item]; }
   /// Items (of the soup's index; a facet of no convex shell, or such a shell) of an object, ascending.
   std::vector<std::uint32_t> items_of(std::uint32_t object) const;
+  std::size_t objects() const { return facets_.size(); }
   /// The object's facets, first … last − 1.
   std::pair<std::uint32_t, std::uint32_t> facets_of(std::uint32_t object) const { return facets_[object]; }
 
@@ -64,7 +65,8 @@ struct SightWork {
 /// nodes and the scene only, whatever was asked before.
 class LinkSight {
  public:
-  /// per_edge: squared, the points from which a node looks (node_points).
+  /// per_edge: squared, the points from which a node looks (node_points). The obstacles may be those before an edit
+  /// that the tree has followed: then only shafts among some items can be asked for, of nodes that did not change.
   LinkSight(const PatchTree& tree, const Obstacles& obstacles, unsigned per_edge);
 
   /// Of whole patches, among all items or among some; then of links that descend from them. The memory of items is a
@@ -90,12 +92,14 @@ class LinkSight {
   const SightWork& work() const { return work_; }
 
  private:
+  void set_shaft(std::uint32_t receiver, std::uint32_t source);
   Sight select(std::span<const std::uint32_t> items);
   void keep_inherited(Sight& sight, const Sight& parent);
 
   const PatchTree& tree_;
   const Obstacles& obstacles_;
   unsigned per_edge_;
+  std::vector<std::uint32_t> facet_offset_;  ///< by object: from the tree's numbers to the obstacles', modulo 2^32
   Shaft shaft_;
   Viewpoint view_;
   std::vector<std::uint32_t> items_, found_, chosen_;

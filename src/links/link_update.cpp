@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "geometry/shadow_volume.h"
@@ -31,19 +32,97 @@ struct ChangedObjects {
   std::vector<std::unique_ptr<ShadowCaster>> casters;
 };
 
+/// Whole patches, and where each sees its own shadows of the changed objects, old and new. Conservative.
+class RootShadows {
+ public:
+  RootShadows(const LinkTask& task, const ChangedObjects& now, const ChangedObjects* before) : tree_(*task.tree) {
+    std::vector<const ShadowCaster*> casters;
+    for (const auto& caster : now.casters) casters.push_back(caster.get());
+    const std::size_t of_now = casters.size();
+    if (before != nullptr) {
+      for (const auto& caster : before->casters) casters.push_back(caster.get());
+    }
+    count_ = casters.size();
+    const std::size_t roots = tree_.roots().size();
+    shadows_.resize(roots * count_);
+    balls_.resize(roots);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(roots)), [&](const auto& range) {
+      for (std::size_t k = 0; k < count_; ++k) {
+        ShadowVolume volume(*casters[k]);
+        for (std::uint32_t r = range.begin(); r < range.end(); ++r) {
+          const Root& root = tree_.root(r);
+          if (!root.present || task.moved[root.object] != 0) continue;
+          ShaftEnd shooter = shaft_end(tree_.node(root.node_first));
+          const Obstacles& obstacles = k < of_now ? *task.now : *task.before;
+          shooter.facet += obstacles.facets_of(root.object).first - tree_.facet_first(root.object);
+          volume.set_shooter(shooter);
+          Shadow& shadow = shadows_[r * count_ + k];
+          shadow.covers = volume.covers_shooter();
+          for (HalfSpace h : volume.region()) {
+            const double per_length = 1 / norm(h.normal);
+            shadow.region.push_back({per_length * h.normal, per_length * h.offset});
+          }
+        }
+      }
+      for (std::uint32_t r = range.begin(); r < range.end(); ++r) {
+        const auto loop = tree_.node(tree_.root(r).node_first).loop();
+        Ball& ball = balls_[r];
+        for (const Vec3& v : loop) ball.centre = ball.centre + (1.0 / static_cast<double>(loop.size())) * v;
+        for (const Vec3& v : loop) ball.radius = std::max(ball.radius, norm(v - ball.centre));
+        ball.radius *= 1 + 1e-9;
+      }
+    });
+  }
+
+  /// Whether what one sees of the other may have changed.
+  bool may_change(std::uint32_t a, std::uint32_t b) const {
+    for (std::size_t k = 0; k < count_; ++k) {
+      const Shadow &of_a = shadows_[a * count_ + k], &of_b = shadows_[b * count_ + k];
+      if (of_a.covers || of_b.covers || (reaches(b, of_a.region) && reaches(a, of_b.region))) return true;
+    }
+    return false;
+  }
+
+ private:
+  struct Shadow {
+    bool covers = false;
+    std::vector<HalfSpace> region;  ///< unit normals
+  };
+  struct Ball {
+    Vec3 centre;
+    double radius = 0;
+  };
+
+  bool reaches(std::uint32_t r, const std::vector<HalfSpace>& region) const {
+    const Ball& ball = balls_[r];
+    const auto beyond = [&](const HalfSpace& h) {
+      const double height = dot(h.normal, ball.centre) - h.offset;
+      if (height >= 0) return false;
+      return height < -ball.radius - 1e-12 * std::fabs(h.offset) ||
+             std::ranges::all_of(tree_.node(tree_.root(r).node_first).loop(), [&](const Vec3& v) {
+               return dot(h.normal, v) < h.offset - 1e-12 * std::fabs(h.offset);
+             });
+    };
+    return std::ranges::none_of(region, beyond);
+  }
+
+  const PatchTree& tree_;
+  std::size_t count_ = 0;
+  std::vector<Shadow> shadows_;  ///< [root][caster]
+  std::vector<Ball> balls_;
+};
+
 /// Works for one thread.
 class Updater {
  public:
-  Updater(const LinkTask& task, const ChangedObjects& now, const ChangedObjects* before)
+  Updater(const LinkTask& task, const ChangedObjects& now, const ChangedObjects* before, const RootShadows* shadows)
       : task_(task),
         tree_(*task.tree),
         changed_now_(now),
         changed_before_(before),
+        shadows_(shadows),
         sight_(tree_, *task.now, task.points_per_edge) {
-    for (const auto& caster : now.casters) volumes_.emplace_back(std::make_unique<ShadowVolume>(*caster));
-    if (before == nullptr) return;
-    sight_before_.emplace(tree_, *task.before, task.points_per_edge);
-    for (const auto& caster : before->casters) volumes_.emplace_back(std::make_unique<ShadowVolume>(*caster));
+    if (before != nullptr) sight_before_.emplace(tree_, *task.before, task.points_per_edge);
   }
 
   void update(std::uint32_t receiver, LinkIndex& links, NodeRadiosity* differences);
@@ -84,7 +163,7 @@ class Updater {
     return !blocked && energy > task_.eps2 && divided_end(pair, code).has_value();
   }
   bool wants_change(std::span<const Link> links) const;
-  bool shadow_may_change(std::uint32_t source) const;
+
   bool touches_changed(const Sight& sight) const;
 
   void visit(std::span<const Link> old, const Above& above, bool root);
@@ -99,9 +178,9 @@ class Updater {
   const PatchTree& tree_;
   const ChangedObjects& changed_now_;
   const ChangedObjects* changed_before_;
+  const RootShadows* shadows_;  ///< where most pairs are to be left out
   LinkSight sight_;
   std::optional<LinkSight> sight_before_;
-  std::vector<std::unique_ptr<ShadowVolume>> volumes_;
   std::vector<Link> out_;
   bool changed_ = false;  ///< whether what is in out_ differs from what was
   LinkWork work_;
@@ -132,17 +211,6 @@ bool Updater::wants_change(std::span<const Link> links) const {
   });
 }
 
-/// Whether the source may reach into a shadow volume of an object, old or new, as seen from the receiver that the
-/// volumes are set for; conservative.
-bool Updater::shadow_may_change(std::uint32_t source) const {
-  const auto loop = tree_.node(source).loop();
-  return std::ranges::any_of(volumes_, [&](const std::unique_ptr<ShadowVolume>& volume) {
-    return volume->covers_shooter() || std::ranges::none_of(volume->region(), [&](const HalfSpace& h) {
-             return std::ranges::all_of(loop, [&](const Vec3& v) { return dot(h.normal, v) < h.offset; });
-           });
-  });
-}
-
 bool Updater::touches_changed(const Sight& sight) const {
   return std::ranges::any_of(sight_.items(sight),
                              [&](std::uint32_t item) { return std::ranges::binary_search(changed_now_.items, item); });
@@ -151,11 +219,7 @@ bool Updater::touches_changed(const Sight& sight) const {
 void Updater::update(std::uint32_t r, LinkIndex& links, NodeRadiosity* differences) {
   const Root& receiver = tree_.root(r);
   const auto has_moved = [&](const Root& root) { return !task_.moved.empty() && task_.moved[root.object] != 0; };
-  const bool looks_for_shadows = receiver.present && !has_moved(receiver) &&
-                                 (task_.scope == LinkScope::hierarchical || task_.scope == LinkScope::significant);
-  if (looks_for_shadows) {
-    for (const auto& volume : volumes_) volume->set_shooter(shaft_end(tree_.node(receiver.node_first)));
-  }
+
   std::vector<LinkIndex::Replacement> replacements;
   std::vector<std::size_t> stale;  // records to be marked
   const std::span<Link> all = links.of_receiver(r);
@@ -189,8 +253,8 @@ void Updater::update(std::uint32_t r, LinkIndex& links, NodeRadiosity* differenc
       visit(old, ends, true);
     } else {
       const bool forced = task_.any_stale && std::ranges::any_of(old, [](const Link& link) { return link.stale; });
-      if (!forced && !shadow_may_change(roots.source)) continue;
-      if (only_significant() && old.front().energy <= task_.B_eps) {
+      if (!forced && !shadows_->may_change(r, s)) continue;
+      if (only_significant() && old.front().energy < task_.B_eps) {
         stale.push_back(first);
         ++work_.skipped;
         continue;
@@ -251,11 +315,11 @@ void Updater::visit(std::span<const Link> old, const Above& above, bool root) {
     if (!face_each_other(tree_.node(pair.receiver), tree_.node(pair.source), task_.now->soup())) return;
     F = sight_.form_factor(pair.receiver, pair.source);
     const double most = std::max(energy(pair, F), task_.luminance[pair.source] * link.transfer());
-    if (only_significant() && !link.ghost && most <= task_.B_eps) return leave_stale();
+    if (only_significant() && !link.ghost && most < task_.B_eps) return leave_stale();
     find_sight();
     here.affected = evaluate = may_change = true;
   } else {
-    if (only_significant() && link.energy <= task_.B_eps) return leave_stale();
+    if (only_significant() && link.energy < task_.B_eps) return leave_stale();
     const bool blocked_above = !root && above.sight.state == Sight::State::blocked;
     const bool has_changed = task_.before != nullptr;
     if (has_changed && !blocked_above) {
@@ -288,13 +352,14 @@ void Updater::visit(std::span<const Link> old, const Above& above, bool root) {
       forget();
       return copy(old);
     }
-    if (tests_all()) F = sight_.form_factor(pair.receiver, pair.source);
+    // What was left stale may have moved then.
+    if (tests_all() || here.forced) F = sight_.form_factor(pair.receiver, pair.source);
     if (only_significant() && evaluate && !link.ghost) {
       // What moved in can only hide, what moved away only reveal.
       const double v = link.visibility;
       const bool may_hide = touched || blocked_above || here.forced, may_reveal = touched_before || here.forced;
       const double most = std::max(may_hide ? v : 0, may_reveal ? 1 - v : 0);
-      if (most * energy(pair, F) <= task_.B_eps) return leave_stale();
+      if (most * energy(pair, F) < task_.B_eps) return leave_stale();
     }
     changed_ = changed_ || evaluate;
   }
@@ -345,19 +410,6 @@ void Updater::visit(std::span<const Link> old, const Above& above, bool root) {
 
 /// Appends the links between two patches that had none.
 void Updater::grow_roots(const Pair& pair) {
-  if (only_significant()) {
-    const double F = sight_.form_factor(pair.receiver, pair.source);
-    if (energy(pair, F) <= task_.B_eps) {
-      Link unseen = ghost(pair, {}, F, {});
-      unseen.ghost = unseen.open = false;
-      unseen.visibility = 0;
-      unseen.energy = energy(pair, F);
-      unseen.stale = true;
-      ++work_.skipped;
-      out_.push_back(unseen);
-      return;
-    }
-  }
   const Sight sight = sight_.between_roots(pair.receiver, pair.source);
   grow(pair, {}, sight);
   sight_.forget(sight);
@@ -436,8 +488,11 @@ LinkWork update_links(const LinkTask& task, LinkIndex& links, NodeRadiosity* dif
   const ChangedObjects now(*task.now, task.moved);
   std::optional<ChangedObjects> before;
   if (task.before != nullptr) before.emplace(*task.before, task.moved);
+  std::optional<RootShadows> shadows;
+  if (task.scope == LinkScope::hierarchical || task.scope == LinkScope::significant)
+    shadows.emplace(task, now, before ? &*before : nullptr);
   tbb::enumerable_thread_specific<std::unique_ptr<Updater>> updaters(
-      [&] { return std::make_unique<Updater>(task, now, before ? &*before : nullptr); });
+      [&] { return std::make_unique<Updater>(task, now, before ? &*before : nullptr, shadows ? &*shadows : nullptr); });
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(task.tree->roots().size()), 1),
                     [&](const auto& range) {
                       for (std::uint32_t r = range.begin(); r < range.end(); ++r)

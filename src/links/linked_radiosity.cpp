@@ -174,6 +174,7 @@ LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod metho
     any_stale_ = update.work.skipped > 0;
   }
   before_.reset();
+  radiosity_.clear_what_is_gone();
   if (any(relit_)) {
     std::ranges::fill(moved_, 0);
     update.work += update_links(task(LinkScope::materials), links_, differences);
@@ -184,7 +185,11 @@ LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod metho
   } else {
     update.exchange.iterations = radiosity_.shoot(links_, options_.tolerance);
     update.exchange.converged = true;
-    if (any(relit_)) set_energies(links_, tree_, radiosity_.luminance());
+    // What has come had no light before the exchange.
+    const bool new_light = any(relit_) || std::ranges::any_of(edits, [](const Edit& edit) {
+                             return edit.operation == Operation::add || edit.operation == Operation::reshape;
+                           });
+    if (new_light) set_energies(links_, tree_, radiosity_.luminance());
     update.seconds_exchange = watch.lap();
   }
   update.seconds = whole.lap();

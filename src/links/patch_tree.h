@@ -64,6 +64,8 @@ class PatchTree {
   const Node& node(std::uint32_t n) const { return nodes_[n]; }
   const Root& root(std::uint32_t r) const { return roots_[r]; }
   std::uint32_t object_of(std::uint32_t node) const { return roots_[nodes_[node].root].object; }
+  /// Of an object, in the soup that the nodes' facets are those of.
+  std::uint32_t facet_first(std::uint32_t object) const { return facet_first_[object]; }
 
   /// Largest of all levels: no path is longer.
   unsigned depth() const { return depth_; }

@@ -93,7 +93,13 @@ void NodeRadiosity::change_geometry(const EditedScene& scene, std::uint32_t obje
   for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
     if (tree_.root(r).present == (there_[r] != 0)) continue;
     there_[r] = tree_.root(r).present;
-    start(r);
+    if (tree_.root(r).present) start(r);
+  }
+}
+
+void NodeRadiosity::clear_what_is_gone() {
+  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
+    if (!tree_.root(r).present) start(r);
   }
 }
 

@@ -1,9 +1,11 @@
 #include "src/links/linked_radiosity.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
 #include <cstring>
+#include <memory>
 
 #include "src/solve/scene_solution.h"
 #include "tests/links/rooms.h"
@@ -90,6 +92,177 @@ TEST(LinkedRadiosity, HvtLeavesWhatDirectLeavesBitForBit) {
           0);
     }
   }
+}
+
+Scene room_with_things() {
+  Scene scene = empty_room();
+  add(scene, "box on the floor", box_faces({0.5, 0.6, 0}, {1.2, 1.4, 0.8}, 2, 0));
+  add(scene, "lamp", box_faces({1.8, 1.6, 1}, {2.1, 1.9, 1.2}, 3, 0));
+  add(scene, "shelf", box_faces({2.2, 0.3, 0.9}, {2.9, 1.3, 1}, 2, 0));
+  return scene;
+}
+
+LinkOptions coarse() {
+  LinkOptions options;
+  options.eps2 = 0.01;
+  options.eps1 = 0.005;
+  options.smallest_area = 0.02;
+  options.tolerance = 1e-9;
+  return options;
+}
+
+double error_of(const LinkedRadiosity& links) {
+  return link_error(links.tree(), links.elements(), 1, links.converged(), {}, links.radiosity().B()).all;
+}
+
+// The smallest sub-patches are the patches of gathering: what remains is the quadrature of four points.
+TEST(LinkedRadiosity, ConvergesToGatheringAsThresholdsFall) {
+  Scene scene = empty_room();
+  add(scene, "box", box_faces({0.75, 0.75, 0.75}, {1.5, 1.5, 1.5}, 2, 0));
+  SolveOptions gathering;
+  gathering.receivers = Receivers::area;
+  gathering.form_factor_tolerance = 1e-4;
+  gathering.mesh.patch_size = 0.76;
+  const SceneSolution reference = solve_scene(scene, gathering);
+  std::vector<double> mean(scene.surfaces.size()), areas(scene.surfaces.size());
+  for (std::size_t p = 0; p < reference.mesh.patches.size(); ++p) {
+    const Patch& patch = reference.mesh.patches[p];
+    mean[patch.surface] += patch.area * reference.patches.B[p];
+    areas[patch.surface] += patch.area;
+  }
+  double before = 1;
+  for (const double eps : {0.3, 0.1, 0.03, 0.0}) {
+    LinkOptions options = coarse();
+    options.eps2 = options.eps1 = eps;
+    options.smallest_area = 0.3;
+    LinkedRadiosity links(scene, options);
+    links.build();
+    double missed = 0, all = 0;
+    std::vector<double> linked(scene.surfaces.size());
+    for (const Root& root : links.tree().roots()) {
+      const std::uint32_t surface = links.scene().surfaces_of(root.object).first + root.surface;
+      linked[surface] += links.tree().node(root.node_first).area * links.radiosity().B()[root.node_first];
+    }
+    for (std::size_t k = 0; k < mean.size(); ++k) {
+      missed += (linked[k] - mean[k]) * (linked[k] - mean[k]) / areas[k];
+      all += mean[k] * mean[k] / areas[k];
+    }
+    const double error = std::sqrt(missed / all);
+    EXPECT_LE(error, before) << eps;
+    before = error;
+  }
+  EXPECT_LT(before, 2e-3);
+}
+
+TEST(LinkedRadiosity, AnyLinkIsFoundByItsCode) {
+  LinkedRadiosity links(room_with_things(), coarse());
+  links.build();
+  const LinkCounts counts = links.links().count(links.tree(), std::vector<std::uint8_t>{0, 0, 1, 0});
+  EXPECT_GT(counts.mixed, 0u);
+  EXPECT_EQ(counts.dynamic, 0u);
+  EXPECT_EQ(counts.environment + counts.mixed, counts.links());
+  std::size_t found = 0;
+  for (std::uint32_t r = 0; r < links.links().roots(); ++r) {
+    for (const Link& link : links.links().of_receiver(r)) {
+      const std::uint32_t source = links.tree().node(link.source).root;
+      ASSERT_EQ(links.links().find(r, source, link.code), &link);
+      std::uint32_t p = links.tree().root(r).node_first, q = links.tree().root(source).node_first;
+      for (unsigned k = 0; k < link.code.steps(); ++k) {
+        std::uint32_t& end = link.code.end(k) == LinkCode::End::receiver ? p : q;
+        end = links.tree().node(end).first_child + link.code.child(k);
+      }
+      ASSERT_EQ(p, link.destination);
+      ASSERT_EQ(q, link.source);
+      found += link.ghost ? 0 : 1;
+    }
+  }
+  EXPECT_EQ(found, counts.links());
+  EXPECT_EQ(links.links().find(0, 1,
+                               LinkCode()
+                                   .descend(LinkCode::End::receiver, 0)
+                                   .descend(LinkCode::End::receiver, 0)
+                                   .descend(LinkCode::End::receiver, 0)),
+            nullptr);
+}
+
+TEST(LinkedRadiosity, MaterialsTouchNoVisibilityButOfLinksThatAreRefined) {
+  for (const LinkMethod method : {LinkMethod::direct, LinkMethod::hvt, LinkMethod::hvt_peu}) {
+    LinkedRadiosity links(room_with_things(), coarse());
+    links.build();
+    Edit edit;
+    edit.operation = Operation::change;
+    edit.object = 2;
+    edit.materials = {{MaterialChange::kEvery, 4}};  // the lamp goes out
+    const LinkUpdate off = links.update({&edit, 1}, method);
+    EXPECT_GT(off.work.unrefined, 0u);
+    EXPECT_EQ(off.work.links_updated, off.work.unrefined);
+    EXPECT_LT(error_of(links), 1e-5);
+    edit.materials = {{MaterialChange::kEvery, 3}};
+    const LinkUpdate on = links.update({&edit, 1}, method);
+    EXPECT_GT(on.work.refined, 0u);
+    EXPECT_LT(error_of(links), 1e-5);
+  }
+}
+
+TEST(LinkedRadiosity, ObjectsComeAndGo) {
+  for (const LinkMethod method : {LinkMethod::rebuild, LinkMethod::direct, LinkMethod::hvt, LinkMethod::hvt_peu}) {
+    LinkOptions options = coarse();
+    options.B_eps = 0;
+    LinkedRadiosity links(room_with_things(), options);
+    links.build();
+    SCOPED_TRACE(static_cast<int>(method));
+    const std::vector<double> before(links.radiosity().B().begin(), links.radiosity().B().end());
+    std::vector<Edit> edits(2);
+    edits[0].operation = edits[1].operation = Operation::remove;
+    edits[0].object = 1;
+    edits[1].object = 2;
+    links.update(edits, method);
+    EXPECT_LT(error_of(links), 1e-5);
+    for (Edit& edit : edits) edit.operation = Operation::add;
+    links.update(edits, method);
+    EXPECT_LT(error_of(links), 1e-5);
+    double worst = 0;
+    for (const std::uint32_t n : links.elements())
+      worst = std::max(worst, std::fabs(links.radiosity().B()[n] - before[n]));
+    EXPECT_LT(worst, 0.1);  // refinement looks at B as it stood: not the same links everywhere
+  }
+}
+
+// What PEU leaves undone is known, and a later update without a threshold finishes it.
+TEST(LinkedRadiosity, WhatPeuLeavesIsWorkedOff) {
+  LinkOptions options = coarse();
+  options.B_eps = 0.02;
+  LinkedRadiosity links(room_with_things(), options);
+  links.build();
+  const Edit there = move_to(1, {0.4, 0.2, 0}), stays = move_to(3, {0, 0, 0});
+  const LinkUpdate peu = links.update({&there, 1}, LinkMethod::hvt_peu);
+  EXPECT_GT(peu.work.skipped, 0u);
+  const double left = error_of(links);
+  EXPECT_GT(left, 1e-6);
+  EXPECT_LT(left, 0.05);
+  links.update({&stays, 1}, LinkMethod::hvt);
+  EXPECT_LT(error_of(links), 1e-7);
+}
+
+TEST(LinkedRadiosity, AnyNumberOfThreadsGivesTheSameBits) {
+  std::vector<std::unique_ptr<LinkedRadiosity>> all;
+  for (const std::size_t threads : {1, 2}) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    LinkedRadiosity& links = *all.emplace_back(std::make_unique<LinkedRadiosity>(room_with_things(), coarse()));
+    links.build();
+    const Edit edit = move_to(1, {0.3, 0.1, 0.1}, 20);
+    links.update({&edit, 1}, LinkMethod::hvt_peu);
+  }
+  EXPECT_TRUE(same_bits(all[0]->links(), all[1]->links()));
+  EXPECT_EQ(
+      std::memcmp(all[0]->radiosity().B().data(), all[1]->radiosity().B().data(), all[0]->radiosity().B().size_bytes()),
+      0);
+}
+
+TEST(LinkedRadiosity, RefusesOptionsOutOfRange) {
+  LinkOptions options = coarse();
+  options.eps1 = 2 * options.eps2;
+  EXPECT_THROW(LinkedRadiosity(room_with_things(), options), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,0 +1,86 @@
+// Hierarchical links, as a user runs them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/cli/program.h"
+
+namespace exitance {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kCoarse = " --patch-size 1.6 --eps 0.02 --min-area 0.1 ";
+
+TEST(Links, SolveTheFurnaceBetterTheMoreThereAre) {
+  const ScratchFolder scratch;
+  double before = 1;
+  for (const char* eps : {"0.05", "0.02", "0.005"}) {
+    const Outcome outcome =
+        run("solve " + data("furnace_cube.toml") + " --method hierarchical --min-area 0.004 --eps " + eps + " -o " +
+            (scratch / "f").string());
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto result = json_in(scratch / "f" / "result.json");
+    EXPECT_EQ(result["method"], "hierarchical");
+    EXPECT_EQ(result["patches"], 6);
+    EXPECT_LE(result["error_bound"], 1e-8);
+    EXPECT_LE(result["closure_max_defect"], 1e-12);
+    EXPECT_EQ(result["links"]["shadow"], 0);
+    EXPECT_GT(result["links"]["active"], 0);
+    const double worst = std::max(result["B_max"].get<double>() - 2, 2 - result["B_min"].get<double>());
+    EXPECT_LT(worst, before);
+    before = worst / 1.5;
+    for (const char* name : {"solution.vtp", "solution.ply", "image.png"})
+      EXPECT_TRUE(std::filesystem::exists(scratch / "f" / name));
+  }
+  EXPECT_LT(before * 1.5, 0.03);
+}
+
+TEST(Links, FollowTheEventsThatRedistributionFollows) {
+  const ScratchFolder scratch;
+  for (const char* method : {"rebuild", "direct", "hvt", "hvt-peu"}) {
+    const bool draws = method == std::string("hvt");
+    const Outcome outcome = run("dynamic " + data("cube.toml") + kCoarse + "--method " + method +
+                                (draws ? " -o " : " --no-images -o ") + (scratch / method).string());
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto frames = json_in(scratch / method / "frames.json");
+    ASSERT_EQ(frames.size(), 4u);
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(frames[k]["frame"], k);
+      EXPECT_GT(frames[k]["seconds"], 0.0);
+      EXPECT_GT(frames[k]["links_updated"], 0);
+      EXPECT_GT(frames[k]["visibility_tests"], 0);
+      EXPECT_LT(frames[k]["error"], method == std::string("hvt-peu") ? 1e-2 : 1e-5);
+      EXPECT_LT(frames[k]["error_worst_1_percent"], method == std::string("hvt-peu") ? 0.1 : 1e-4);
+      EXPECT_EQ(std::filesystem::exists(scratch / method / ("frame_00" + std::to_string(k) + ".png")), draws);
+    }
+    EXPECT_EQ(frames[1]["edits"][0], "add cube");
+  }
+  const auto direct = json_in(scratch / "direct" / "frames.json"), hvt = json_in(scratch / "hvt" / "frames.json");
+  for (std::size_t k = 1; k < 4; ++k) {
+    EXPECT_EQ(hvt[k]["links"], direct[k]["links"]);
+    EXPECT_EQ(hvt[k]["error"], direct[k]["error"]);
+    EXPECT_LT(hvt[k]["links_updated"], direct[k]["links_updated"]);
+  }
+}
+
+TEST(Links, OptionsThatMeanNothingAreRefused) {
+  const ScratchFolder scratch;
+  const Outcome solved = run("solve " + data("furnace_cube.toml") + " --eps 0.1");
+  EXPECT_EQ(solved.code, 2);
+  EXPECT_THAT(solved.err, HasSubstr("hierarchical"));
+  const std::string to = " -o " + (scratch / "d").string();
+  EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method scratch --b-eps 0.1" + to).code, 2);
+  EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method hvt --eps 0.1 --eps1 0.2" + to).code, 2);
+  EXPECT_EQ(run("solve " + data("furnace_cube.toml") + " --method hierarchical --receivers area").code, 2);
+  std::ofstream(scratch / "bad.toml") << "[links]\neps2 = -1\n[[material]]\nname = \"m\"\nrho = 0.5\n[[object]]\n"
+                                         "box = {min = [0,0,0], max = [1,1,1]}\nmaterial = \"m\"\n";
+  const Outcome bad = run("solve " + (scratch / "bad.toml").string());
+  EXPECT_EQ(bad.code, 3);
+  EXPECT_THAT(bad.err, HasSubstr("bad.toml:2: \"eps2\" must not be negative"));
+}
+
+}  // namespace
+}  // namespace exitance
