@@ -40,9 +40,8 @@ int run(int argc, char** argv) {
   app.add_flag("--reduced", reduced, "Few questions, and neither rays nor EPECK");
   app.add_option("--check", expected, "Compare counts with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
-  const Asked asked =
-      reduced ? Asked{{"exact", "plain-double"}, 348}
-              : Asked{{"exact", "plain-double", "rays:64", "rays:1024", "rays:1024:fast", "cgal-epeck"}, 17400};
+  const Asked asked = reduced ? Asked{{"exact", "plain-double"}, 348}
+                              : Asked{{"exact", "plain-double", "rays:1024", "rays:1024:fast", "cgal-epeck"}, 8700};
   StressOptions options;
   options.count = asked.count;
   options.failures_kept = 0;

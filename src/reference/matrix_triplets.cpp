@@ -19,6 +19,9 @@ namespace {
 constexpr std::string_view kHeader = "i,j,F,F_error", kShortHeader = "i,j,F";
 constexpr std::uint32_t kLargestIndex = std::numeric_limits<std::uint32_t>::max() - 1;
 
+/// Where nobody knows how many rows there are, a wrong index must not ask for memory that no file of this size needs.
+constexpr std::uint64_t kRowsAnyway = 100'000, kRowsPerEntry = 1'000;
+
 struct Triplet {
   std::uint32_t i = 0, j = 0, line = 0;
   double F = 0, F_error = 0;
@@ -76,7 +79,12 @@ class TripletReader {
   FormFactorMatrix make_matrix() {
     std::ranges::sort(entries_, {}, &Triplet::place);
     std::uint32_t rows = rows_.value_or(0);
-    for (const Triplet& entry : entries_) rows = std::max({rows, entry.i + 1, entry.j + 1});
+    for (const Triplet& entry : entries_) {
+      rows = std::max({rows, entry.i + 1, entry.j + 1});
+      if (!rows_ && rows > kRowsAnyway + kRowsPerEntry * entries_.size())
+        throw InputError(text_.file(), entry.line,
+                         fmt::format("the index {} leaves nearly all rows without an entry; correct it", rows - 1));
+    }
     FormFactorMatrix matrix;
     matrix.columns = rows;
     matrix.row_first.assign(std::size_t{rows} + 1, 0);

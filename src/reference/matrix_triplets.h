@@ -19,7 +19,8 @@ void write_matrix_triplets(const std::filesystem::path& path, const FormFactorMa
 
 /// See read_matrix. Entries may come in any order. The header may also be "i,j,F", of programs that know no error.
 /// Throws InputError for another header, a line without as many numbers, numbers that are malformed or not finite (an
-/// error may be infinite), an error below 0, an index of `rows` or above, an entry that is there twice.
+/// error may be infinite), an error below 0, an index of `rows` or above, or, where `rows` is not given, so
+/// large that nearly all rows would be empty (100,000 and 1,000 an entry), an entry that is there twice.
 MatrixRecord read_matrix_triplets(const std::filesystem::path& path, std::optional<std::uint32_t> rows);
 
 }  // namespace exitance

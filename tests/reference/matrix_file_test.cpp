@@ -179,6 +179,7 @@ TEST_F(MatrixFile, BadTripletsAreNamed) {
   EXPECT_THAT(error_of("a.csv", header + "-1,0,0.5,0\n"), at(3, "index -1"));
   EXPECT_THAT(error_of("a.csv", header + "1.5,0,0.5,0\n"), at(3, "\"1.5\""));
   EXPECT_THAT(error_of("a.csv", header + "1,4294967295,0.5,0\n"), at(3, "index 4294967295"));
+  EXPECT_THAT(error_of("a.csv", header + "1,4294967294,0.5,0\n"), at(3, "index 4294967294 leaves nearly all rows"));
   EXPECT_THAT(error_of("a.csv", header + "0,2,0.5,0\n", 2), at(3, "index 2 is not within 0 … 1"));
   EXPECT_THAT(error_of("a.csv", header + "1,0,0.5,0\n0,1,0.25,0\n"), at(4, "0,1 is there already, in line 2"));
 }
