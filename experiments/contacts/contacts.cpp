@@ -77,6 +77,22 @@ void answer(std::uint32_t polygons, std::uint32_t most_rays, CsvTable& table, Pl
   }
 }
 
+/// What rays that are not told see from a covered point is left to rounding, which of two surfaces in one plane they
+/// meet, and to the machine's vector instructions; that it stays away from the exact rows, however many rays there are,
+/// is not.
+std::vector<std::string> what_is_wrong(const CsvTable& found, const CsvTable& expected) {
+  CsvTable told{found.header, {}}, untold{found.header, {}};
+  for (const auto& row : found.rows) (row[1].ends_with("untold") ? untold : told).rows.push_back(row);
+  std::vector<std::string> wrong = differences(told, expected, 3, 0.1, {});
+  for (std::string& line : differences(untold, expected, 3, 0.1, {"rms_error", "rms_of_covered"}))
+    wrong.push_back(std::move(line));
+  for (const auto& row : untold.rows) {
+    if (std::stoi(row[2]) >= 256 && !(std::stod(row[6]) > 5 * std::stod(row[7])))
+      wrong.push_back(row[1] + " " + row[2] + ": the error of covered points is not 5 times that of the others");
+  }
+  return wrong;
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Rows of furnished rooms by rays that are told of contacts and by rays that are not"};
   std::string out, expected;
@@ -96,7 +112,7 @@ int run(int argc, char** argv) {
     write_plot(std::filesystem::path(out) / "plot.svg", plot);
   }
   if (expected.empty()) return 0;
-  return verdict(differences(table, CsvTable::read(expected), 3, 0.1, {}));
+  return verdict(what_is_wrong(table, CsvTable::read(expected)));
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ double seconds_since(Clock::time_point start) {
 
 class Dynamic {
  public:
-  explicit Dynamic(CLI::App& verb) {
+  explicit Dynamic(CLI::App& verb) : verb_(verb) {
     verb.add_option("SCENE", path_, "Scene file (.toml) with events")->required();
     verb.add_option(
             "--method", method_,
@@ -116,6 +116,7 @@ class Dynamic {
     ResultFolder folder(folder_);
     draft_ = folder.draft();
     if (const auto by_links = link_method_named(method_)) {
+      refuse_shots_only();
       LinkFrameOptions how;
       how.links =
           links_.chosen(given, patch_size_->count() > 0 ? std::optional(options_.mesh.patch_size) : std::nullopt);
@@ -124,6 +125,7 @@ class Dynamic {
       how.method = *by_links;
       how.references = reference_;
       how.images = images_;
+      how.image_size = image_size_;
       how.stop = [this] { return stop(); };
       const LinkFrames frames = follow_links(given, how, draft_);
       frames_ = frames.frames;
@@ -152,6 +154,15 @@ class Dynamic {
   }
 
  private:
+  /// What has no meaning for links.
+  void refuse_shots_only() const {
+    for (const char* name : {"--strategy", "--threshold", "--importance", "--importance-points", "--budget-shots",
+                             "--budget-ms", "--replay", "--no-log", "--work-off", "--references", "--elements"}) {
+      if (verb_.get_option(name)->count() > 0)
+        throw CLI::ValidationError(name, "needs --method scratch, restart or redistribute");
+    }
+  }
+
   void finish(const ResultFolder& folder) {
     write_whole_file(draft_ / "frames.json", [&](std::ostream& out) { out << frames_.dump(1) << '\n'; });
     folder.publish();
@@ -289,6 +300,7 @@ class Dynamic {
     write_vtp(draft_ / (name + ".vtp"), faces, {&exitance, 1});
   }
 
+  CLI::App& verb_;
   SessionOptions options_;
   LinkSettings links_;
   CLI::Option *patch_size_ = nullptr, *elements_ = nullptr;

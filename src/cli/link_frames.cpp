@@ -121,7 +121,8 @@ class Frames {
                           : given_.scene.camera       ? *given_.scene.camera
                                                       : default_camera(faces.points(), is_closed(given_.scene));
     const std::string name = fmt::format("frame_{:03}", result_.frames.size());
-    write_png(folder_ / (name + ".png"), render(faces, {bands, B, emits, covered}, camera));
+    write_png(folder_ / (name + ".png"),
+              render(faces, {bands, B, emits, covered}, camera, {options_.image_size, options_.image_size}));
     VtkArray exitance{"B", given_.scene.unit, {}, B};
     if (bands == 3) exitance.components = {"R", "G", "B"};
     for (std::uint32_t b = 0; bands != 1 && bands != 3 && b < bands; ++b)

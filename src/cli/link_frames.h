@@ -18,9 +18,10 @@ std::optional<LinkMethod> link_method_named(const std::string& name);
 struct LinkFrameOptions {
   LinkOptions links;
   LinkMethod method = LinkMethod::hvt;
-  bool references = true;      ///< whether errors are found
-  bool images = true;          ///< whether pictures and VTP files are written
-  std::function<bool()> stop;  ///< asked between frames
+  bool references = true;          ///< whether errors are found
+  bool images = true;              ///< whether pictures and VTP files are written
+  std::uint32_t image_size = 800;  ///< of the pictures, in pixels
+  std::function<bool()> stop;      ///< asked between frames
 };
 
 struct LinkFrames {

@@ -35,7 +35,7 @@ LinkOptions LinkSettings::chosen(const DynamicScene& scene, std::optional<double
   const LinkDefaults& given = scene.links;
   options.mesh.patch_size = patch_size.value_or(given.patch_size.value_or(scene.scene.mesh.patch_size));
   options.eps2 = eps2_.value_or(given.eps2.value_or(options.eps2));
-  options.eps1 = eps1_ ? *eps1_ : given.eps1 && !eps2_ ? *given.eps1 : options.eps2 / 2;
+  options.eps1 = eps1_ ? *eps1_ : given.eps1 && !eps2_ ? std::min(*given.eps1, options.eps2) : options.eps2 / 2;
   options.B_eps = B_eps_.value_or(given.B_eps.value_or(options.B_eps));
   options.smallest_area = smallest_area_.value_or(given.smallest_area.value_or(options.smallest_area));
   options.points_per_edge = points_;

@@ -105,17 +105,28 @@ std::uint32_t facet_of(const PolygonSoup& soup, std::uint32_t item) {
   return item < facets ? item : soup.shells()[item - facets].facets.front();
 }
 
-/// An item of one version's index in that of another, of an object that is the same in both.
-std::uint32_t same_item(const SceneVersion& in, std::uint32_t item, const SceneVersion& other) {
+/// Whether some of an item of the index is of the objects: several may close a solid together.
+bool has_any_of(const SceneVersion& version, std::span<const std::uint32_t> objects, std::uint32_t item) {
+  const auto facets = static_cast<std::uint32_t>(version.soup().facets().size());
+  if (item < facets) return is_of(version, objects, item);
+  return std::ranges::any_of(version.soup().shells()[item - facets].facets,
+                             [&](std::uint32_t f) { return is_of(version, objects, f); });
+}
+
+/// An item of one version's index in that of another, of objects that are the same in both; `changed`: the others.
+std::uint32_t same_item(const SceneVersion& in, std::uint32_t item, const SceneVersion& other,
+                        std::span<const std::uint32_t> changed) {
   const std::uint32_t facet = facet_of(in.soup(), item);
   for (std::uint32_t object = 0; object < in.objects(); ++object) {
     const ObjectSlot &slot = in.slot(object), &there = other.slot(object);
     if (!slot.present || facet < slot.facet_first || facet >= slot.facet_last) continue;
     const PolygonSoup& soup = other.soup();
     const std::uint32_t same = facet - slot.facet_first + there.facet_first, shell = soup.facets()[same].shell;
-    // Beside a new neighbour a solid may be one no longer; the facet is there all the same.
-    const bool is_shell = item != facet && shell != kNone && soup.shells()[shell].convex;
-    return is_shell ? static_cast<std::uint32_t>(soup.facets().size()) + shell : same;
+    // Beside a new neighbour a solid may be one no longer, or be closed by it; the facet is there all the same.
+    const auto there_too = static_cast<std::uint32_t>(soup.facets().size()) + shell;
+    const bool is_shell =
+        item != facet && shell != kNone && soup.shells()[shell].convex && !has_any_of(other, changed, there_too);
+    return is_shell ? there_too : same;
   }
   return item;
 }
@@ -133,7 +144,9 @@ struct VersionDifference::Scratch {
 
 VersionDifference::VersionDifference(std::shared_ptr<const SceneVersion> before,
                                      std::shared_ptr<const SceneVersion> after)
-    : before_(std::move(before)), after_(std::move(after)), objects_(after_->changed_since(*before_)),
+    : before_(std::move(before)),
+      after_(std::move(after)),
+      objects_(after_->changed_since(*before_)),
       scratch_([this] { return std::make_unique<Scratch>(*this); }) {
   const auto add = [](const SceneVersion& version, std::uint32_t object, auto& casters) {
     const ObjectSlot& slot = version.slot(object);
@@ -211,9 +224,9 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
     scratch.stays.clear();
     scratch.stays_before.clear();
     for (const std::uint32_t item : sight_after.between()) {
-      if (is_of(*after_, objects_, facet_of(after_->soup(), item))) continue;
+      if (has_any_of(*after_, objects_, item)) continue;
       scratch.stays.push_back(item);
-      scratch.stays_before.push_back(same_item(*after_, item, *before_));
+      scratch.stays_before.push_back(same_item(*after_, item, *before_, objects_));
     }
   };
   for (FormFactorChange& c : changes) {
@@ -261,7 +274,7 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
 }
 
 std::vector<FormFactorChange> VersionDifference::column(std::uint32_t patch, Search search,
-                                                                const FormFactorColumn* known, ChangeWork& work) const {
+                                                        const FormFactorColumn* known, ChangeWork& work) const {
   std::vector<std::uint32_t> elements;
   if (search == Search::everywhere || !keeps(patch)) {
     for (std::uint32_t e = 0; e < after_->elements(); ++e) {

@@ -25,27 +25,21 @@ class Lap {
 }  // namespace
 
 Obstacles::Obstacles(const EditedScene& scene) : soup_(make_soup(scene.scene())), contacts_(soup_) {
-  const std::size_t facets = soup_.facets().size();
-  object_of_item_.assign(facets + soup_.shells().size(), kNone);
   for (std::uint32_t object = 0; object < scene.scene().objects.size(); ++object) {
     const EditedScene::Range range = scene.surfaces_of(object);
     facets_.emplace_back(soup_.first_facet(range.first), soup_.first_facet(range.last));
-    std::fill(object_of_item_.begin() + facets_.back().first, object_of_item_.begin() + facets_.back().second, object);
   }
-  for (std::size_t s = 0; s < soup_.shells().size(); ++s)
-    object_of_item_[facets + s] = object_of_item_[soup_.shells()[s].facets.front()];
 }
 
 std::vector<std::uint32_t> Obstacles::items_of(std::uint32_t object) const {
   const auto facets = static_cast<std::uint32_t>(soup_.facets().size());
   std::vector<std::uint32_t> items;
-  const auto convex = [&](std::uint32_t shell) { return shell != kNone && soup_.shells()[shell].convex; };
   for (std::uint32_t f = facets_[object].first; f < facets_[object].second; ++f) {
-    if (!convex(soup_.facets()[f].shell)) items.push_back(f);
+    const std::uint32_t shell = soup_.facets()[f].shell;
+    items.push_back(shell != kNone && soup_.shells()[shell].convex ? facets + shell : f);
   }
-  for (std::uint32_t s = 0; s < soup_.shells().size(); ++s) {
-    if (convex(s) && object_of_item_[facets + s] == object) items.push_back(facets + s);
-  }
+  std::ranges::sort(items);
+  items.erase(std::unique(items.begin(), items.end()), items.end());
   return items;
 }
 

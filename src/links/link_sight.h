@@ -22,8 +22,8 @@ class Obstacles {
 
   const PolygonSoup& soup() const { return soup_; }
   const Contacts& contacts() const { return contacts_; }
-  std::uint32_t object_of_item(std::uint32_t item) const { return object_of_item_[item]; }
-  /// Items (of the soup's index; a facet of no convex shell, or such a shell) of an object, ascending.
+  /// Items (of the soup's index) of which some is an object's, ascending: a facet of no convex shell, or such a shell,
+  /// which several objects may close together.
   std::vector<std::uint32_t> items_of(std::uint32_t object) const;
   std::size_t objects() const { return facets_.size(); }
   /// The object's facets, first … last − 1.
@@ -33,7 +33,6 @@ class Obstacles {
   PolygonSoup soup_;
   Contacts contacts_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> facets_;  ///< by object
-  std::vector<std::uint32_t> object_of_item_;
 };
 
 /// What enters the shaft of a link, as far as it was asked about.

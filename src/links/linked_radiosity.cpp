@@ -153,6 +153,8 @@ LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod metho
   for (std::uint32_t object = 0; object < relit_.size(); ++object) {
     if (relit_[object] != 0) radiosity_.change_materials(scene_, object);
   }
+  // What links may bring follows at once: thresholds are asked of it.
+  if (any(relit_)) set_energies(links_, tree_, radiosity_.luminance());
   update.seconds_scene = watch.lap();
   if (method == LinkMethod::rebuild) {
     before_.reset();
@@ -184,7 +186,7 @@ LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod metho
     exchange(update);
   } else {
     update.exchange.iterations = radiosity_.shoot(links_, options_.tolerance);
-    update.exchange.converged = true;
+    update.exchange.converged = update.exchange.iterations < kMostExchanges;
     // What has come had no light before the exchange.
     const bool new_light = any(relit_) || std::ranges::any_of(edits, [](const Edit& edit) {
                              return edit.operation == Operation::add || edit.operation == Operation::reshape;
@@ -252,13 +254,14 @@ LinkError link_error(const PatchTree& tree, std::span<const std::uint32_t> eleme
     return y;
   };
   const auto error = [&](std::span<const std::uint32_t> of) {
-    double missed = 0, all = 0;
+    double missed = 0, all = 0, before = 0;
     for (const std::uint32_t n : of) {
-      const double area = tree.node(n).area, y = Y(reference, n), d = y - Y(current, n);
+      const double area = tree.node(n).area, y = Y(reference, n), d = y - Y(current, n), y_was = Y(was, n);
       missed += area * d * d;
       all += area * y * y;
+      before += area * y_was * y_was;
     }
-    return missed == 0 ? 0 : std::sqrt(missed / all);
+    return missed == 0 ? 0 : std::sqrt(missed / (all > 0 ? all : before));
   };
   LinkError result;
   result.all = error(elements);

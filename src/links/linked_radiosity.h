@@ -88,7 +88,7 @@ class LinkedRadiosity {
 
 /// Equation 7 of George, Sillion and Greenberg 1990 over elements, and over the 1 % of them (at least one) whose
 /// luminance changed most, |y_ref − y_was|; of equals the first. By node and band: `reference`, what it `was` before
-/// (may be shorter: 0), and `current`. 0 / 0 is 0.
+/// (may be shorter: 0), and `current`. Where all became dark, relative to what was there before; 0 / 0 is 0.
 struct LinkError {
   double all = 0, worst_1_percent = 0;
 };

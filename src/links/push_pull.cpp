@@ -303,6 +303,7 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
     measure(r);
     absorb(r);
   });
+  double brightest = 0;  // the most energy that there was: of a light that went out little stays
   for (std::uint64_t round = 0; round < most; ++round) {
     double all = 0, left = 0, largest = 0;
     for (std::uint32_t r = 0; r < roots; ++r) {
@@ -311,7 +312,8 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
       left += unshot[r];
       largest = std::max(largest, unshot[r]);
     }
-    if (left <= share * all) return round;
+    brightest = std::max(brightest, all);
+    if (left <= share * brightest) return round;
     for (std::uint32_t r = 0; r < roots; ++r)
       shoots[r] = tree_.root(r).present && unshot[r] > 0 && unshot[r] >= kShootTogether * largest;
     for_each_root(tree_, [&](std::uint32_t r) {

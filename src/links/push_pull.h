@@ -13,6 +13,9 @@
 
 namespace exitance {
 
+/// Sweeps or rounds of shots after which an exchange of energy ends at the latest.
+inline constexpr std::uint64_t kMostExchanges = 10'000;
+
 /// How far a solution over links is from the one that they have. All are relative to max B, of the worst band.
 struct LinkExchange {
   std::uint64_t iterations = 0;  ///< sweeps
@@ -52,14 +55,14 @@ class NodeRadiosity {
 
   /// Sweeps over all links, each of which gathers at all patches at once (Jacobi), until the error bound is within the
   /// tolerance, or rounding, or `most` sweeps end it. In parallel; the same bits for any number of threads.
-  LinkExchange gather(const LinkIndex& links, double tolerance, std::uint64_t most = 10'000);
+  LinkExchange gather(const LinkIndex& links, double tolerance, std::uint64_t most = kMostExchanges);
 
   /// [W/m²] what a link that changed brings more than before; to be pushed. Different receiving roots: any threads.
   void receive(std::uint32_t node, double transfer, std::uint32_t source);
   /// Pushes what was received and shoots it on, the patches with the most unshot energy (A |ΔB|, luminance) first: in
-  /// rounds of those that have a tenth of the most, until no more than `share` of the energy of all patches is left or
-  /// `most` rounds are done. Returns the rounds.
-  std::uint64_t shoot(const LinkIndex& links, double share, std::uint64_t most = 10'000);
+  /// rounds of those that have a tenth of the most, until no more than `share` of the energy that all patches had
+  /// at most is left or `most` rounds are done. Returns the rounds.
+  std::uint64_t shoot(const LinkIndex& links, double share, std::uint64_t most = kMostExchanges);
 
   /// H [W/m²] of a leaf, each band, and Σ F over its links and those above it: as of the last sweep.
   std::span<const double> leaf_H(std::uint32_t node) const { return {H_.data() + std::size_t{node} * bands_, bands_}; }

@@ -88,7 +88,7 @@ TEST_F(BadInputTest, Usage) {
   expect(2, "paint", "paint");
   expect(2, "solve", "SCENE");
   expect_of_scene(2, cube + " --colour", "--colour");
-  expect_of_scene(2, cube + " --method hierarchical", "gather,shoot");
+  expect_of_scene(2, cube + " --method thermal", "gather,shoot");
   expect_of_scene(2, cube + " --visibility sampled", "exact");
   expect_of_scene(2, cube + " --receivers volume", "points");
   expect_of_scene(2, cube + " --patch-size wide", "--patch-size");
