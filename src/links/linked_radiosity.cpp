@@ -186,12 +186,20 @@ LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod metho
     exchange(update);
   } else {
     update.exchange.iterations = radiosity_.shoot(links_, options_.tolerance);
-    update.exchange.converged = update.exchange.iterations < kMostExchanges;
     // What has come had no light before the exchange.
     const bool new_light = any(relit_) || std::ranges::any_of(edits, [](const Edit& edit) {
                              return edit.operation == Operation::add || edit.operation == Operation::reshape;
                            });
     if (new_light) set_energies(links_, tree_, radiosity_.luminance());
+    // By that light links may be worth looking at that were not before.
+    if (new_light && any_stale_) {
+      std::ranges::fill(moved_, 0);
+      const LinkWork again = update_links(task(LinkScope::significant), links_, differences);
+      any_stale_ = again.skipped > 0;
+      update.work += again;
+      update.exchange.iterations += radiosity_.shoot(links_, options_.tolerance);
+    }
+    update.exchange.converged = update.exchange.iterations < kMostExchanges;
     update.seconds_exchange = watch.lap();
   }
   update.seconds = whole.lap();

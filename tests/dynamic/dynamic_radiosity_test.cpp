@@ -88,8 +88,8 @@ void expect_columns_equal_rows(const Scene& scene, const MeshOptions& mesh) {
 TEST(FormFactorColumn, EqualsTheRowsThatLookFromEachPoint) {
   Scene scene = test_room();
   Surface frame;  // not convex, with a hole: patches of several pieces
-  frame.polygon.outer = {{0.25, 1, 1.75}, {2.25, 1, 1.75}, {2.25, 2.5, 1.75}, {1.25, 2.5, 1.75}, {1.25, 1.75, 1.75},
-                         {0.25, 1.75, 1.75}};
+  frame.polygon.outer = {{0.25, 1, 1.75},   {2.25, 1, 1.75},    {2.25, 2.5, 1.75},
+                         {1.25, 2.5, 1.75}, {1.25, 1.75, 1.75}, {0.25, 1.75, 1.75}};
   frame.polygon.holes = {{{0.5, 1.25, 1.75}, {0.5, 1.5, 1.75}, {1, 1.5, 1.75}, {1, 1.25, 1.75}}};
   frame.object = 4;
   scene.surfaces.push_back(frame);
@@ -154,6 +154,24 @@ TEST(DynamicRadiosity, EachKindOfEditEqualsSolvingFromScratch) {
     room.finish();
     EXPECT_LT(largest_difference(room.state.element_B(), converged_reference(room.state)), 1e-10)
         << name_of(edit.operation) << " object " << edit.object;
+  }
+}
+
+TEST(DynamicRadiosity, ASolidThatTwoObjectsCloseChangesWithEither) {
+  Scene scene = test_room();
+  const std::vector<Surface> faces = box_surfaces({1, 1, 1}, {2, 2, 2}, 1, 2, false);
+  std::erase_if(scene.surfaces, [](const Surface& s) { return s.object == 1 || s.object == 2; });
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    scene.surfaces.push_back(faces[k]);
+    scene.surfaces.back().object = k < 2 ? 2 : 1;
+  }
+  std::ranges::stable_sort(scene.surfaces, {}, &Surface::object);
+  Followed room(scene);
+  room.finish();
+  for (const Operation operation : {Operation::remove, Operation::add}) {
+    room.apply({operation, 2, {}, {}, {}});
+    room.finish();
+    EXPECT_LT(largest_difference(room.state.element_B(), converged_reference(room.state)), 1e-10) << name_of(operation);
   }
 }
 

@@ -115,6 +115,57 @@ double error_of(const LinkedRadiosity& links) {
   return link_error(links.tree(), links.elements(), 1, links.converged(), {}, links.radiosity().B()).all;
 }
 
+TEST(LinkedRadiosity, ASolidThatTwoObjectsCloseChangesWithEither) {
+  Scene scene = empty_room();
+  const std::vector<Surface> faces = box_faces({1, 1, 1}, {2, 2, 2}, 2, 0);
+  add(scene, "sides", {faces.begin() + 2, faces.end()});
+  add(scene, "lids", {faces.begin(), faces.begin() + 2});
+  LinkedRadiosity direct(scene, coarse()), hvt(scene, coarse()), shot(scene, coarse());
+  for (LinkedRadiosity* links : {&direct, &hvt, &shot}) links->build();
+  for (const Operation operation : {Operation::remove, Operation::add}) {
+    const std::vector<Edit> edits{{operation, 2, {}, {}, {}}};
+    direct.update(edits, LinkMethod::direct);
+    EXPECT_GT(hvt.update(edits, LinkMethod::hvt).work.links_updated, 0u);
+    shot.update(edits, LinkMethod::hvt_peu);
+    EXPECT_TRUE(same_bits(direct.links(), hvt.links())) << name_of(operation);
+    EXPECT_LT(error_of(shot), 1e-3) << name_of(operation);
+  }
+}
+
+// A move while there is little light is not worth looking at, until a lamp is switched on.
+TEST(LinkedRadiosity, LightThatComesLaterFindsWhatWasSkippedBefore) {
+  Scene scene = empty_room();
+  scene.surfaces[1].material = 0;
+  add(scene, "bulb", box_faces({0.1, 0.1, 0.1}, {0.11, 0.11, 0.11}, 3, 0));
+  add(scene, "box", box_faces({0.8, 0.8, 1}, {1.8, 1.8, 1.6}, 2, 0));
+  Surface lamp;
+  lamp.polygon.outer = {{1, 1, 2.99}, {1, 2, 2.99}, {2, 2, 2.99}, {2, 1, 2.99}};
+  lamp.material = 2;
+  add(scene, "lamp", {lamp});
+  LinkOptions options = coarse();
+  options.B_eps = 1e-4;
+  LinkedRadiosity links(scene, options);
+  links.build();
+  links.update(std::vector<Edit>{move_to(2, {0.4, 0.4, 0.2})}, LinkMethod::hvt_peu);
+  links.update(std::vector<Edit>{{Operation::change, 3, {}, {}, {{MaterialChange::kEvery, 3}}}}, LinkMethod::hvt_peu);
+  EXPECT_LT(error_of(links), 1e-3);
+}
+
+TEST(LinkedRadiosity, TheOnlyLightGoesOut) {
+  Scene scene = empty_room();
+  scene.surfaces[1].material = 0;
+  add(scene, "lamp", box_faces({1.2, 1.2, 2.8}, {1.9, 1.9, 2.9}, 3, 0));
+  LinkedRadiosity links(scene, coarse());
+  links.build();
+  const std::vector<double> lit(links.radiosity().B().begin(), links.radiosity().B().end());
+  const LinkUpdate off = links.update(std::vector<Edit>{{Operation::change, 1, {}, {}, {{MaterialChange::kEvery, 2}}}},
+                                      LinkMethod::hvt_peu);
+  EXPECT_TRUE(off.exchange.converged);
+  const LinkError error = link_error(links.tree(), links.elements(), 1, links.converged(), lit, links.radiosity().B());
+  EXPECT_LT(error.all, 1e-6);
+  EXPECT_LT(error.worst_1_percent, 1e-6);
+}
+
 // The smallest sub-patches are the patches of gathering: what remains is the quadrature of four points.
 TEST(LinkedRadiosity, ConvergesToGatheringAsThresholdsFall) {
   Scene scene = empty_room();
