@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -207,7 +208,11 @@ class Dynamic {
   }
 
   std::string apply(const Event& event, EditSession& session, std::optional<FrameReferences>& references) {
-    session.apply(event.edit);
+    try {
+      session.apply(event.edit);
+    } catch (const InvalidEdit& wrong) {
+      throw InputError(path_, event.line, wrong.what());
+    }
     if (references) references->apply(event.edit);
     moved_[event.edit.object] = event.line;
     return fmt::format("{} {}", name_of(event.edit.operation), session.scene().scene().objects[event.edit.object].name);
@@ -321,7 +326,8 @@ class Dynamic {
   std::vector<double> reference_before_;
   Json frames_ = Json::array();
   std::string summary_;
-  bool partial_ = false, last_ = false;
+  std::atomic<bool> partial_ = false;  // links ask to stop from all threads
+  bool last_ = false;
 };
 
 }  // namespace

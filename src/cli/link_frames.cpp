@@ -34,7 +34,7 @@ class Frames {
 
   LinkFrames follow() {
     const std::vector<Event>& events = given_.events;
-    add(events.empty() ? 0 : std::min(0.0, events.front().time), {}, links_.build());
+    add(events.empty() ? 0 : std::min(0.0, events.front().time), {}, links_.build(options_.stop));
     for (std::size_t next = 0; next < events.size() && !(options_.stop && options_.stop());) {
       const double time = events[next].time;
       std::vector<Edit> edits;

@@ -111,10 +111,11 @@ class Solve {
         ->capture_default_str();
     rays_.add_to(verb);
     links_.add_to(verb);
-    patch_size_ = verb.add_option("--patch-size", options_.mesh.patch_size,
-                                  "Longest edge of a patch [m]; 0: surfaces as they are; as the scene says unless given")
-                      ->check(number_between(0))
-                      ->capture_default_str();
+    patch_size_ =
+        verb.add_option("--patch-size", options_.mesh.patch_size,
+                        "Longest edge of a patch [m]; 0: surfaces as they are; as the scene says unless given")
+            ->check(number_between(0))
+            ->capture_default_str();
     elements_ = verb.add_option("--elements", options_.mesh.elements_per_edge,
                                 "Elements along the edge of a patch; as the scene says unless given")
                     ->check(whole_number_between(1, kMostElements))
@@ -163,7 +164,7 @@ class Solve {
 
     const bool by_links = method_ == "hierarchical";
     std::optional<HierarchicalSolution> linked;
-    if (by_links) linked.emplace(solve_links(scene));
+    if (by_links) linked.emplace(solve_links(scene, start));
     const SceneSolution solution = by_links ? std::move(linked->solution) : solve(scene, start);
     Report report = make_report(scene, solution);
     if (by_links) add_links(report, *linked);
@@ -187,7 +188,7 @@ class Solve {
   }
 
  private:
-  HierarchicalSolution solve_links(const Scene& scene) {
+  HierarchicalSolution solve_links(const Scene& scene, Clock::time_point start) {
     if (receivers_ != "points") throw CLI::ValidationError("--receivers", "--method hierarchical receives at points");
     if (rays_.chosen(options_.seed)) throw CLI::ValidationError("--visibility", "--method hierarchical is exact");
     std::optional<double> patch_size;
@@ -198,6 +199,7 @@ class Solve {
     how.links.tolerance = options_.tolerance;
     how.links.mesh.memory_limit = memory_limit_.bytes();
     how.seed = options_.seed;
+    how.stop = [this, start] { return interrupted() || (time_limit_ && seconds_since(start) > *time_limit_); };
     std::vector<std::uint8_t> moves(scene.objects.size());
     for (const Event& event : given.events) moves[event.edit.object] = 1;
     return solve_by_links(scene, how, moves);

@@ -94,7 +94,7 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
     throw InputError(scene.name, 0, "no surface has an area; there is nothing to solve");
   }
   LinkedRadiosity links(scene, options.links);
-  HierarchicalSolution result{SceneSolution(make_soup(scene)), links.build(), {}, 0, links.options()};
+  HierarchicalSolution result{SceneSolution(make_soup(scene)), links.build(options.stop), {}, 0, links.options()};
   result.links = links.links().count(links.tree(), moves);
   const std::vector<std::uint8_t> used = links.nodes_in_use();
   result.sub_patches = static_cast<std::uint64_t>(std::ranges::count(used, 1));
@@ -127,6 +127,7 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
   s.patches.residual = result.update.exchange.residual;
   s.patches.error_bound = result.update.exchange.error_bound;
   s.patches.converged = result.update.exchange.converged;
+  s.stopped = result.update.stopped;
   s.form_factor_error = error_of_form_factors(links, result.update.exchange.factor);
   s.seconds_form_factors = result.update.seconds_links;
   s.seconds_solve = result.update.seconds_exchange;

@@ -8,7 +8,8 @@ namespace exitance {
 
 struct HierarchicalOptions {
   LinkOptions links;
-  std::uint64_t seed = 1;  ///< of the pairs whose reciprocity is measured
+  std::uint64_t seed = 1;      ///< of the pairs whose reciprocity is measured
+  std::function<bool()> stop;  ///< asked by any thread; ends the refinement early (SceneSolution::stopped)
 };
 
 struct HierarchicalSolution {

@@ -162,6 +162,11 @@ class Updater {
   bool wants_refinement(const Pair& pair, LinkCode code, double energy, bool blocked) const {
     return !blocked && energy > task_.eps2 && divided_end(pair, code).has_value();
   }
+  /// Whether it is to be done, too.
+  bool divides(const Pair& pair, LinkCode code, double energy, bool blocked) const {
+    return wants_refinement(pair, code, energy, blocked) &&
+           !(task_.scope == LinkScope::refinement && task_.stop && task_.stop());
+  }
   bool wants_change(std::span<const Link> links) const;
 
   bool touches_changed(const Sight& sight) const;
@@ -366,7 +371,7 @@ void Updater::visit(std::span<const Link> old, const Above& above, bool root) {
 
   const bool blocked = known ? here.sight.state == Sight::State::blocked : link.blocked;
   if (!link.ghost) {
-    if (may_change && wants_refinement(pair, link.code, energy(pair, F), blocked)) {
+    if (may_change && divides(pair, link.code, energy(pair, F), blocked)) {
       changed_ = true;
       grow(pair, link.code, here.sight);
     } else if (evaluate) {
@@ -418,7 +423,7 @@ void Updater::grow_roots(const Pair& pair) {
 /// Appends a new link and, where its energy asks for it, what it is refined to.
 void Updater::grow(const Pair& pair, LinkCode code, const Sight& sight) {
   const double F = sight_.form_factor(pair.receiver, pair.source);
-  if (!wants_refinement(pair, code, energy(pair, F), sight.state == Sight::State::blocked)) {
+  if (!divides(pair, code, energy(pair, F), sight.state == Sight::State::blocked)) {
     ++work_.links_affected;
     return add_leaf(pair, code, F, sight);
   }

@@ -38,6 +38,9 @@ struct LinkTask {
   unsigned points_per_edge = 2;
   LinkScope scope = LinkScope::refinement;
   bool any_stale = false;  ///< whether some link may be stale
+  /// Asked by any thread before each link that refinement (the scope) would divide: whether none is to be divided any
+  /// more.
+  std::function<bool()> stop;
 };
 
 struct LinkWork {

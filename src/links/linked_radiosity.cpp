@@ -1,8 +1,10 @@
 #include "src/links/linked_radiosity.h"
 
+#include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -10,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "src/scene/input_error.h"
 #include "src/solve/radiosity_system.h"
 
 namespace exitance {
@@ -17,6 +20,8 @@ namespace {
 
 /// Rounds of refinement and exchange that building may take, and to what those before the last converge.
 constexpr std::uint64_t kMostRounds = 30;
+/// About what a link takes in the index.
+constexpr std::uint64_t kBytesALink = sizeof(Link) + 16;
 constexpr double kWhileBuilding = 1e-3;
 constexpr double kConverged = 1e-12;
 constexpr double kShareOfArea = 1.0 / 6'000;
@@ -107,19 +112,35 @@ void LinkedRadiosity::exchange(LinkUpdate& update) {
   update.seconds_exchange += watch.lap();
 }
 
-LinkUpdate LinkedRadiosity::build() {
+LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
   Stopwatch whole;
   const double cpu = processor_time();
   LinkUpdate update;
   links_ = LinkIndex(tree_.roots().size());
   any_stale_ = false;
   radiosity_.start_over();
+  // Each link that is divided becomes four and a ghost.
+  const std::uint64_t most = options_.mesh.memory_limit / (4 * kBytesALink);
+  std::atomic<std::uint64_t> divided = 0;
+  std::atomic<bool> stopped = false;
+  LinkTask refinement = task(LinkScope::refinement);
+  refinement.stop = [&] {
+    if (stopped || (stop && stop())) return stopped = true;
+    return ++divided > most;
+  };
   while (update.rounds < kMostRounds) {
     Stopwatch watch;
-    const LinkWork work = update_links(task(LinkScope::refinement), links_);
+    const LinkWork work = update_links(refinement, links_);
     update.work += work;
     update.seconds_links += watch.lap();
-    if (update.rounds > 0 && work.refined == 0) break;
+    if (divided > most) {
+      throw LimitError(
+          fmt::format("links would take more than the {:.4g} MiB that they may; choose a larger threshold "
+                      "or smallest area",
+                      static_cast<double>(options_.mesh.memory_limit) / 0x1p20));
+    }
+    update.stopped = stopped;
+    if (stopped || (update.rounds > 0 && work.refined == 0)) break;
     ++update.rounds;
     radiosity_.gather(links_, kWhileBuilding);
     update.seconds_exchange += watch.lap();

@@ -2,6 +2,7 @@
 // A hierarchical radiosity solution in a scene that changes.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -36,6 +37,7 @@ struct LinkUpdate {
   LinkWork work;
   LinkExchange exchange;     ///< of PEU, whose iterations are rounds of shots, without bounds
   std::uint64_t rounds = 0;  ///< of refinement and exchange, when built
+  bool stopped = false;      ///< before all links were refined that should be
   double seconds_scene = 0;  ///< wall clock: obstacles and their indices, places of nodes
   double seconds_links = 0;  ///< finding, testing and refining links
   double seconds_exchange = 0;
@@ -55,8 +57,10 @@ class LinkedRadiosity {
   const Obstacles& obstacles() const { return *obstacles_; }
   const LinkOptions& options() const { return options_; }
 
-  /// From nothing: links are refined and energy is exchanged in turn, until no link's B F is above eps2.
-  LinkUpdate build();
+  /// From nothing: links are refined and energy is exchanged in turn, until a round refines none: B F of none was above
+  /// eps2 then. `stop`, asked by any thread, ends the refinement early (LinkUpdate::stopped). Throws LimitError when
+  /// the links would not fit in mesh.memory_limit.
+  LinkUpdate build(const std::function<bool()>& stop = {});
 
   /// Edits that happen at once. Throws InvalidEdit, and has then done those before it. REQUIRES: built.
   LinkUpdate update(std::span<const Edit> edits, LinkMethod method);

@@ -1,5 +1,7 @@
 #include "src/links/patch_tree.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -116,6 +118,12 @@ void PatchTree::append(const std::vector<Node>& root_nodes, const std::vector<st
     nodes_.back().root = static_cast<std::uint32_t>(roots_.size());
     for (std::size_t n = root.node_first; n < nodes_.size(); ++n) {
       if (nodes_[n].area < 4 * options_.smallest_area) continue;
+      if ((nodes_.size() + 4) * sizeof(Node) > options_.mesh.memory_limit) {
+        throw LimitError(
+            fmt::format("sub-patches of {:.3g} m^2 would take more than the {:.4g} MiB that they may; "
+                        "choose a larger smallest area",
+                        options_.smallest_area, static_cast<double>(options_.mesh.memory_limit) / 0x1p20));
+      }
       if (nodes_.size() + 4 > kMostNodes)
         throw LimitError("the smallest area asks for more than 2^31 sub-patches; choose a larger one");
       Node child = nodes_[n];
@@ -123,7 +131,6 @@ void PatchTree::append(const std::vector<Node>& root_nodes, const std::vector<st
       child.parent = static_cast<std::uint32_t>(n);
       child.whole = false;
       ++child.level;
-      depth_ = std::max<unsigned>(depth_, child.level);
       nodes_.insert(nodes_.end(), 4, child);
       place_children(static_cast<std::uint32_t>(n));
     }

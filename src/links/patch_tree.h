@@ -67,9 +67,6 @@ class PatchTree {
   /// Of an object, in the soup that the nodes' facets are those of.
   std::uint32_t facet_first(std::uint32_t object) const { return facet_first_[object]; }
 
-  /// Largest of all levels: no path is longer.
-  unsigned depth() const { return depth_; }
-
  private:
   std::vector<Node> root_nodes(const EditedScene& scene, const PolygonSoup& soup, std::uint32_t object,
                                std::vector<std::uint32_t>& surfaces) const;
@@ -82,7 +79,6 @@ class PatchTree {
   std::vector<Root> roots_;
   std::vector<std::uint32_t> root_first_, root_count_;  ///< by object
   std::vector<std::uint32_t> facet_first_;              ///< by object, in the soup of the facets as they are numbered
-  unsigned depth_ = 0;
 };
 
 /// A place from which a node receives, and its share of the node's area.

@@ -45,8 +45,8 @@ class NodeRadiosity {
   /// Every node gets its E: nothing has been exchanged.
   void start_over();
 
-  /// After an edit of the geometry of an object: nodes that are new, or there again, get their E. What is gone keeps its
-  /// B until it is cleared, so that it can be told what its links brought.
+  /// After an edit of the geometry of an object: nodes that are new, or there again, get their E. What is gone keeps
+  /// its B until it is cleared, so that it can be told what its links brought.
   void change_geometry(const EditedScene& scene, std::uint32_t object);
   void clear_what_is_gone();
   /// Reflectances and emissions of an object are now those of the scene. B becomes E' + ρ' H with H as it is; what that

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <memory>
 
+#include "src/scene/input_error.h"
 #include "src/solve/scene_solution.h"
 #include "tests/links/rooms.h"
 
@@ -149,6 +151,20 @@ TEST(LinkedRadiosity, LightThatComesLaterFindsWhatWasSkippedBefore) {
   links.update(std::vector<Edit>{move_to(2, {0.4, 0.4, 0.2})}, LinkMethod::hvt_peu);
   links.update(std::vector<Edit>{{Operation::change, 3, {}, {}, {{MaterialChange::kEvery, 3}}}}, LinkMethod::hvt_peu);
   EXPECT_LT(error_of(links), 1e-3);
+}
+
+TEST(LinkedRadiosity, RefinementEndsWhenAskedAndWhereMemoryEnds) {
+  LinkOptions options = coarse();
+  LinkedRadiosity whole(room_with_things(), options), part(room_with_things(), options);
+  EXPECT_FALSE(whole.build().stopped);
+  std::atomic<int> left = 20;
+  const LinkUpdate update = part.build([&] { return left-- <= 0; });
+  EXPECT_TRUE(update.stopped);
+  const std::vector<std::uint8_t> moves(4);
+  EXPECT_LT(part.links().count(part.tree(), moves).links(), whole.links().count(whole.tree(), moves).links());
+  EXPECT_TRUE(update.exchange.converged);
+  options.mesh.memory_limit = 100'000;
+  EXPECT_THROW(LinkedRadiosity(room_with_things(), options).build(), LimitError);
 }
 
 TEST(LinkedRadiosity, TheOnlyLightGoesOut) {
