@@ -312,8 +312,12 @@ void Updater::visit(std::span<const Link> old, const Above& above, bool root) {
   double F = link.form_factor;
   bool evaluate = false, may_change = false;  // its value; whether it is refined
   if (only_refines()) {
-    if (!wants_change(old)) return copy(old);
-    if (!link.open) find_sight();
+    if (!wants_change(old)) return above.forced ? leave_stale() : copy(old);
+    if (here.forced) {  // what it was left as tells nothing
+      F = sight_.form_factor(pair.receiver, pair.source);
+      evaluate = changed_ = true;
+    }
+    if (!link.open || here.forced) find_sight();
     may_change = true;
   } else if (above.moved) {
     changed_ = true;
