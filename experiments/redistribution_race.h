@@ -18,7 +18,7 @@
 #include "src/dynamic/converged_reference.h"
 #include "src/dynamic/picture.h"
 #include "src/output/plot.h"
-#include "src/reference/run_clock.h"
+#include "src/output/run_clock.h"
 #include "src/scene/scene_file.h"
 
 namespace exitance {

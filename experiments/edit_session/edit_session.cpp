@@ -13,7 +13,7 @@
 #include "src/dynamic/converged_reference.h"
 #include "src/dynamic/edit_session.h"
 #include "src/output/plot.h"
-#include "src/reference/run_clock.h"
+#include "src/output/run_clock.h"
 #include "src/scene/scene_file.h"
 
 namespace exitance {

@@ -117,7 +117,7 @@ void update(const std::string& name, bool reduced, Tables& tables) {
     const auto error_of = [&](std::span<const double> to, std::span<const double> B) {
       return link_error(links.tree(), elements, links.radiosity().bands(), to, before, B);
     };
-    const LinkError error = error_of(reference, links.radiosity().B());
+    const ConvergenceError error = error_of(reference, links.radiosity().B());
     const LinkCounts counts = links.links().count(links.tree(), moves);
     const auto used = links.nodes_in_use();
     if (way.method == LinkMethod::direct) direct_seconds = done.cpu_seconds;

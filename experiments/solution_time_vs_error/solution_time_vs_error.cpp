@@ -17,7 +17,7 @@
 #include "src/output/plot.h"
 #include "src/reference/comparison.h"
 #include "src/reference/matrix_solution.h"
-#include "src/reference/run_clock.h"
+#include "src/output/run_clock.h"
 #include "src/scene/furnished_room.h"
 #include "src/scene/reader.h"
 #include "src/solve/radiosity_system.h"

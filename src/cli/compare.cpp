@@ -25,7 +25,7 @@
 #include "src/reference/comparison.h"
 #include "src/reference/matrix_solution.h"
 #include "src/reference/pair_run.h"
-#include "src/reference/run_clock.h"
+#include "src/output/run_clock.h"
 #include "src/scene/input_error.h"
 #include "src/scene/scene_hash.h"
 #include "src/solve/radiosity_system.h"

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "src/cli/console.h"
+#include "src/cli/frame_files.h"
 #include "src/cli/interrupt.h"
 #include "src/cli/json_text.h"
 #include "src/cli/link_frames.h"
@@ -27,10 +28,8 @@
 #include "src/dynamic/picture.h"
 #include "src/dynamic/trespass.h"
 #include "src/output/result_folder.h"
-#include "src/output/vtk.h"
 #include "src/output/whole_file.h"
 #include "src/scene/input_error.h"
-#include "src/scene/scene_check.h"
 #include "src/scene/scene_file.h"
 
 namespace exitance {
@@ -293,16 +292,9 @@ class Dynamic {
   void draw(const DynamicScene& given, const EditSession& session, double time, const std::vector<double>& B) const {
     const DynamicRadiosity& state = session.solution();
     const Faces faces = faces_of(state.version());
-    const Camera camera = !given.camera_path.empty() ? camera_at(given.camera_path, time)
-                          : given.scene.camera       ? *given.scene.camera
-                                                     : default_camera(faces.points(), is_closed(given.scene));
-    const std::string name = fmt::format("frame_{:03}", frames_.size());
-    write_png(draft_ / (name + ".png"), picture(state, B, camera, {image_size_, image_size_}));
-    VtkArray exitance{"B", given.scene.unit, {}, B};
-    if (state.bands() == 3) exitance.components = {"R", "G", "B"};
-    for (std::uint32_t b = 0; state.bands() != 1 && state.bands() != 3 && b < state.bands(); ++b)
-      exitance.components.push_back(fmt::format("band {}", b));
-    write_vtp(draft_ / (name + ".vtp"), faces, {&exitance, 1});
+    write_frame(draft_, given, {frames_.size(), time, faces, state.bands(), B}, [&](const Camera& camera) {
+      return picture(state, B, camera, {image_size_, image_size_});
+    });
   }
 
   CLI::App& verb_;

@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <map>
 
+#include "src/cli/frame_files.h"
 #include "src/links/hierarchical_solution.h"
 #include "src/output/image.h"
 #include "src/output/mesh_faces.h"
-#include "src/output/vtk.h"
-#include "src/scene/scene_check.h"
 #include "src/solve/scene_solution.h"
 
 namespace exitance {
@@ -53,7 +52,7 @@ class Frames {
   void add(double time, const std::vector<std::string>& edits, const LinkUpdate& update) {
     const std::vector<std::uint32_t> elements = links_.elements();
     const std::span<const double> B = links_.radiosity().B();
-    std::optional<LinkError> error;
+    std::optional<ConvergenceError> error;
     if (options_.references) {
       const std::vector<double> reference = links_.converged();
       error = link_error(links_.tree(), elements, links_.radiosity().bands(), reference, reference_before_, B);
@@ -117,17 +116,9 @@ class Frames {
       B.insert(B.end(), of_node.begin(), of_node.end());
       emits.push_back(std::ranges::any_of(E, [](double value) { return value > 0; }));
     }
-    const Camera camera = !given_.camera_path.empty() ? camera_at(given_.camera_path, time)
-                          : given_.scene.camera       ? *given_.scene.camera
-                                                      : default_camera(faces.points(), is_closed(given_.scene));
-    const std::string name = fmt::format("frame_{:03}", result_.frames.size());
-    write_png(folder_ / (name + ".png"),
-              render(faces, {bands, B, emits, covered}, camera, {options_.image_size, options_.image_size}));
-    VtkArray exitance{"B", given_.scene.unit, {}, B};
-    if (bands == 3) exitance.components = {"R", "G", "B"};
-    for (std::uint32_t b = 0; bands != 1 && bands != 3 && b < bands; ++b)
-      exitance.components.push_back(fmt::format("band {}", b));
-    write_vtp(folder_ / (name + ".vtp"), faces, {&exitance, 1});
+    write_frame(folder_, given_, {result_.frames.size(), time, faces, bands, B}, [&](const Camera& camera) {
+      return render(faces, {bands, B, emits, covered}, camera, {options_.image_size, options_.image_size});
+    });
   }
 
   const DynamicScene& given_;

@@ -52,7 +52,8 @@ std::vector<double> converged_reference(const DynamicRadiosity& state) {
   const Solution solution = gather(make_system(d, rows), {.tolerance = 1e-13});
   std::vector<double> B = element_exitance(d, irradiance(rows, solution.B, d.bands));
   for (std::uint32_t e = 0; e < n; ++e) {
-    if (!version.has_element(e)) std::fill_n(B.begin() + static_cast<std::ptrdiff_t>(std::size_t{e} * d.bands), d.bands, 0.0);
+    if (!version.has_element(e))
+      std::fill_n(B.begin() + static_cast<std::ptrdiff_t>(std::size_t{e} * d.bands), d.bands, 0.0);
   }
   return B;
 }
@@ -84,38 +85,12 @@ std::optional<std::vector<double>> FrameReferences::find(const DynamicRadiosity&
 ConvergenceError convergence_error(const SceneVersion& version, std::uint32_t bands,
                                    const std::vector<double>& reference, const std::vector<double>& was,
                                    const std::vector<double>& current) {
-  const std::vector<double> weights = luminance_weights(bands);
-  const auto Y = [&](const std::vector<double>& B, std::uint32_t e) {
-    double y = 0;
-    for (std::uint32_t b = 0; b < bands; ++b) {
-      const std::size_t i = std::size_t{e} * bands + b;
-      if (i < B.size()) y += weights[b] * B[i];
-    }
-    return y;
-  };
   std::vector<std::uint32_t> elements;
-  std::vector<double> change(version.elements());
   for (std::uint32_t e = 0; e < version.elements(); ++e) {
-    if (!version.has_element(e)) continue;
-    elements.push_back(e);
-    change[e] = std::fabs(Y(reference, e) - Y(was, e));
+    if (version.has_element(e)) elements.push_back(e);
   }
-  const auto error = [&](std::span<const std::uint32_t> of) {
-    double missed = 0, all = 0, all_before = 0;
-    for (const std::uint32_t e : of) {
-      const double area = version.mesh().elements[e].area, y = Y(reference, e), d = y - Y(current, e);
-      missed += area * d * d;
-      all += area * y * y;
-      all_before += area * Y(was, e) * Y(was, e);
-    }
-    return missed == 0 ? 0 : std::sqrt(missed / (all > 0 ? all : all_before));
-  };
-  ConvergenceError result;
-  result.all = error(elements);
-  std::ranges::stable_sort(elements, std::greater<>(), [&](std::uint32_t e) { return change[e]; });
-  const std::size_t most = (elements.size() + 99) / 100;
-  result.worst_1_percent = error(std::span(elements).first(most));
-  return result;
+  const auto area = [&](std::uint32_t e) { return version.mesh().elements[e].area; };
+  return convergence_error(elements, area, bands, reference, was, current);
 }
 
 }  // namespace exitance

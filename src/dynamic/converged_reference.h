@@ -8,6 +8,7 @@
 
 #include "src/dynamic/dynamic_radiosity.h"
 #include "src/dynamic/edit_session.h"
+#include "src/solve/convergence_error.h"
 
 namespace exitance {
 
@@ -37,13 +38,7 @@ class FrameReferences {
   std::optional<EditSession> session_;
 };
 
-/// Equation 7 of George, Sillion and Greenberg 1990 over elements that are there, and over the 1 % of them (at least
-/// one) whose luminance changed most, |y_ref − y_before|; of equals the first. by element and band: `reference`, what
-/// it `was` before (may be shorter: 0), and `current`. 0 / 0 is 0; where all of the reference
-/// is 0 (what has become dark), errors are relative to what it was.
-struct ConvergenceError {
-  double all = 0, worst_1_percent = 0;
-};
+/// Equation 7 over the elements that are there.
 ConvergenceError convergence_error(const SceneVersion& version, std::uint32_t bands,
                                    const std::vector<double>& reference, const std::vector<double>& was,
                                    const std::vector<double>& current);

@@ -102,7 +102,6 @@ class LinkSight {
   Shaft shaft_;
   Viewpoint view_;
   std::vector<std::uint32_t> items_, found_, chosen_;
-  std::uint32_t points_of_ = kNone;
   std::vector<NodePoint> points_;
   SightWork work_;
 };

@@ -1,17 +1,16 @@
 #include "src/links/linked_radiosity.h"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
 
+#include "src/output/run_clock.h"
 #include "src/scene/input_error.h"
 #include "src/solve/radiosity_system.h"
 
@@ -25,24 +24,6 @@ constexpr std::uint64_t kBytesALink = sizeof(Link) + 16;
 constexpr double kWhileBuilding = 1e-3;
 constexpr double kConverged = 1e-12;
 constexpr double kShareOfArea = 1.0 / 6'000;
-
-class Stopwatch {
- public:
-  /// Seconds since the last lap.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-double processor_time() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 double total_area(const Scene& scene) {
   double area = 0;
@@ -106,15 +87,14 @@ LinkTask LinkedRadiosity::task(LinkScope scope) const {
 }
 
 void LinkedRadiosity::exchange(LinkUpdate& update) {
-  Stopwatch watch;
+  RunClock watch;
   update.exchange = radiosity_.gather(links_, options_.tolerance);
   set_energies(links_, tree_, radiosity_.luminance());
   update.seconds_exchange += watch.lap();
 }
 
 LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
-  Stopwatch whole;
-  const double cpu = processor_time();
+  RunClock whole;
   LinkUpdate update;
   links_ = LinkIndex(tree_.roots().size());
   any_stale_ = false;
@@ -129,7 +109,7 @@ LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
     return ++divided > most;
   };
   while (update.rounds < kMostRounds) {
-    Stopwatch watch;
+    RunClock watch;
     const LinkWork work = update_links(refinement, links_);
     update.work += work;
     update.seconds_links += watch.lap();
@@ -146,14 +126,13 @@ LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
     update.seconds_exchange += watch.lap();
   }
   exchange(update);
-  update.seconds = whole.lap();
-  update.cpu_seconds = processor_time() - cpu;
+  update.seconds = whole.seconds();
+  update.cpu_seconds = whole.cpu_seconds();
   return update;
 }
 
 LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod method) {
-  Stopwatch whole, watch;
-  const double cpu = processor_time();
+  RunClock whole, watch;
   std::ranges::fill(moved_, 0);
   std::ranges::fill(relit_, 0);
   for (const Edit& edit : edits) {
@@ -183,8 +162,8 @@ LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod metho
     const double seconds_scene = update.seconds_scene;
     update = build();
     update.seconds_scene = seconds_scene;
-    update.seconds = whole.lap();
-    update.cpu_seconds = processor_time() - cpu;
+    update.seconds = whole.seconds();
+    update.cpu_seconds = whole.cpu_seconds();
     return update;
   }
 
@@ -223,8 +202,8 @@ LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod metho
     update.exchange.converged = update.exchange.iterations < kMostExchanges;
     update.seconds_exchange = watch.lap();
   }
-  update.seconds = whole.lap();
-  update.cpu_seconds = processor_time() - cpu;
+  update.seconds = whole.seconds();
+  update.cpu_seconds = whole.cpu_seconds();
   return update;
 }
 
@@ -274,31 +253,11 @@ std::vector<std::uint32_t> LinkedRadiosity::elements() const {
   return elements;
 }
 
-LinkError link_error(const PatchTree& tree, std::span<const std::uint32_t> elements, std::uint32_t bands,
-                     std::span<const double> reference, std::span<const double> was, std::span<const double> current) {
-  const std::vector<double> weights = luminance_weights(bands);
-  const auto Y = [&](std::span<const double> B, std::uint32_t n) {
-    double y = 0;
-    for (std::size_t b = 0, i = std::size_t{n} * bands; b < bands && i + b < B.size(); ++b) y += weights[b] * B[i + b];
-    return y;
-  };
-  const auto error = [&](std::span<const std::uint32_t> of) {
-    double missed = 0, all = 0, before = 0;
-    for (const std::uint32_t n : of) {
-      const double area = tree.node(n).area, y = Y(reference, n), d = y - Y(current, n), y_was = Y(was, n);
-      missed += area * d * d;
-      all += area * y * y;
-      before += area * y_was * y_was;
-    }
-    return missed == 0 ? 0 : std::sqrt(missed / (all > 0 ? all : before));
-  };
-  LinkError result;
-  result.all = error(elements);
-  std::vector<std::uint32_t> by_change(elements.begin(), elements.end());
-  std::ranges::stable_sort(by_change, std::greater<>(),
-                           [&](std::uint32_t n) { return std::fabs(Y(reference, n) - Y(was, n)); });
-  result.worst_1_percent = error(std::span(by_change).first((by_change.size() + 99) / 100));
-  return result;
+ConvergenceError link_error(const PatchTree& tree, std::span<const std::uint32_t> elements, std::uint32_t bands,
+                            std::span<const double> reference, std::span<const double> was,
+                            std::span<const double> current) {
+  const auto area = [&](std::uint32_t n) { return tree.node(n).area; };
+  return convergence_error(elements, area, bands, reference, was, current);
 }
 
 }  // namespace exitance

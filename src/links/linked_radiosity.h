@@ -9,6 +9,7 @@
 
 #include "src/links/link_update.h"
 #include "src/scene/edit.h"
+#include "src/solve/convergence_error.h"
 
 namespace exitance {
 
@@ -90,13 +91,9 @@ class LinkedRadiosity {
   bool any_stale_ = false;
 };
 
-/// Equation 7 of George, Sillion and Greenberg 1990 over elements, and over the 1 % of them (at least one) whose
-/// luminance changed most, |y_ref − y_was|; of equals the first. By node and band: `reference`, what it `was` before
-/// (may be shorter: 0), and `current`. Where all became dark, relative to what was there before; 0 / 0 is 0.
-struct LinkError {
-  double all = 0, worst_1_percent = 0;
-};
-LinkError link_error(const PatchTree& tree, std::span<const std::uint32_t> elements, std::uint32_t bands,
-                     std::span<const double> reference, std::span<const double> was, std::span<const double> current);
+/// Equation 7 over elements(). By node and band: the reference, what it was before and what it is.
+ConvergenceError link_error(const PatchTree& tree, std::span<const std::uint32_t> elements, std::uint32_t bands,
+                            std::span<const double> reference, std::span<const double> was,
+                            std::span<const double> current);
 
 }  // namespace exitance

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <random>
 
 #include "src/form_factor/area_rows.h"
 #include "src/form_factor/sampled_area_rows.h"
+#include "src/output/run_clock.h"
 #include "src/scene/input_error.h"
 #include "src/scene/scene_check.h"
 #include "src/solve/error_bound.h"
@@ -19,18 +19,6 @@
 
 namespace exitance {
 namespace {
-
-class Stopwatch {
- public:
-  /// Seconds since the last lap.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 // Means over the elements of each patch, weighted by area.
 std::vector<double> patch_means(const Discretisation& d, std::span<const double> of_element) {
@@ -250,7 +238,7 @@ class SceneSolver {
   }
 
   const SolveOptions& options_;
-  Stopwatch stopwatch_;
+  RunClock stopwatch_;
   SceneSolution result_;
   std::unique_ptr<MeshVisibility> visibility_;
   bool all_columns_known_ = false;

@@ -11,14 +11,17 @@
 
 namespace exitance {
 
+/// FNV-1a, 64 bits.
+inline std::uint64_t seed_of(std::string_view name) {
+  std::uint64_t seed = 14695981039346656037u;
+  for (const char c : name) seed = (seed ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return seed;
+}
+
 /// A sequence of numbers that is the same for the same name, on every machine.
 class Random {
  public:
-  explicit Random(std::string_view name) {
-    std::uint64_t seed = 14695981039346656037u;  // FNV-1a
-    for (const char c : name) seed = (seed ^ static_cast<unsigned char>(c)) * 1099511628211u;
-    bits_.seed(seed);
-  }
+  explicit Random(std::string_view name) : bits_(seed_of(name)) {}
   explicit Random(std::uint64_t seed) : bits_(seed) {}
   int whole(int low, int high) { return low + static_cast<int>(bits_() % static_cast<std::uint64_t>(high - low + 1)); }
   double real(double low, double high) { return low + (high - low) * static_cast<double>(bits_() >> 11) * 0x1p-53; }

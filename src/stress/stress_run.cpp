@@ -26,12 +26,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::uint64_t hash(const std::string& name) {
-  std::uint64_t h = 14695981039346656037u;  // FNV-1a
-  for (const char c : name) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  return h;
-}
-
 /// A question and all that is drawn for it come from its name.
 struct Named {
   std::string name;
@@ -116,7 +110,7 @@ class StressRun {
       return std::nullopt;
     }
     Random random(name + "/" + names_[property]);
-    const auto ask = [&](const PointQuestion& q) { return contender.ask(q, hash(name)); };
+    const auto ask = [&](const PointQuestion& q) { return contender.ask(q, seed_of(name)); };
     return try_property(properties()[property], question, opinion, ask, random);
   }
 
@@ -131,7 +125,7 @@ class StressRun {
       tally.properties.resize(names_.size());
       std::vector<std::size_t> wrong;
       const auto start = Clock::now();
-      const Opinion opinion = contender.ask(question, hash(what.name));
+      const Opinion opinion = contender.ask(question, seed_of(what.name));
       tally.seconds = seconds_since(start);
       tally.questions = 1;
       tally.stages = opinion.stages;
@@ -181,7 +175,7 @@ class StressRun {
     const bool is_answer = found.what == names_.size();
     const auto fails = [&](const PointQuestion& question) {
       try {
-        const Opinion opinion = contender.ask(question, hash(what.name));
+        const Opinion opinion = contender.ask(question, seed_of(what.name));
         if (is_answer) return judge(opinion, oracle_form_factor(question)).is_wrong;
         const auto trial = try_one(found.what, what.name, contender, question, opinion);
         return trial && !trial->holds();
@@ -196,7 +190,7 @@ class StressRun {
                           .F = 0,
                           .truth = {}};
     const PointQuestion question = failure.asked[0];
-    failure.F = contender.ask(question, hash(what.name)).F;
+    failure.F = contender.ask(question, seed_of(what.name)).F;
     if (options_.oracle) failure.truth = static_cast<double>(oracle_form_factor(question).F);
     if (!is_answer && names_[found.what] != kClosure) {
       Random random(what.name + "/" + names_[found.what]);

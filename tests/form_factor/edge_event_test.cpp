@@ -8,19 +8,13 @@
 
 #include "src/form_factor/pole.h"
 #include "src/stress/placement.h"
+#include "tests/geometry/solids.h"
 
 namespace exitance {
 namespace {
 
 SeenEdge edge(std::uint64_t id, const Vec3& a, const Vec3& b) {
   return {id, a, b, normalized(a), normalized(b)};
-}
-
-/// A rotation without zeros.
-Vec3 turned(const Vec3& p) {
-  const double s = 1.0 / 7;
-  return Vec3{0.1, 0.2, 0.3} + p.x * Vec3{2 * s, 3 * s, 6 * s} + p.y * Vec3{-6 * s, -2 * s, 3 * s} +
-         p.z * Vec3{3 * s, -6 * s, 2 * s};
 }
 
 /// Three edges above the unit square at z = 0, each met by the line of sight from `x` along `d`.

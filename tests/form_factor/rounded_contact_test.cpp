@@ -13,13 +13,6 @@
 namespace exitance {
 namespace {
 
-/// Rounds coordinates off all lattices.
-Vec3 turned(const Vec3& p) {
-  const double s = 1.0 / 7;
-  return Vec3{0.1, 0.2, 0.3} + p.x * Vec3{2 * s, 3 * s, 6 * s} + p.y * Vec3{-6 * s, -2 * s, 3 * s} +
-         p.z * Vec3{3 * s, -6 * s, 2 * s};
-}
-
 /// Floor and ceiling of a room of edges of length 8, and between them a post on the floor.
 class Post {
  public:

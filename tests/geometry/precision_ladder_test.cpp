@@ -1,7 +1,6 @@
 // Inputs aimed at each stage of each predicate: that stage decides, and decides as rational arithmetic does; what
 // values come with it are within their bounds.
 
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,27 +9,13 @@
 #include "geometry/open_region.h"
 #include "geometry/predicates.h"
 #include "src/stress/placement.h"
+#include "tests/geometry/rational_points.h"
 
 namespace exitance {
 namespace {
 
-using Q = CGAL::Exact_predicates_exact_constructions_kernel::FT;
-using Point = std::array<Q, 3>;
-
-Point exact(const Vec3& v) {
-  return {Q(v.x), Q(v.y), Q(v.z)};
-}
-Point operator-(const Point& a, const Point& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Q determinant(const Point& a, const Point& b, const Point& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
 Q orientation_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& v) {
   return determinant(exact(b) - exact(a), exact(c) - exact(a), exact(v) - exact(a));
-}
-int sign(const Q& q) {
-  return static_cast<int>(CGAL::sign(q));
 }
 
 /// How a point is aimed at a plane.

@@ -2,7 +2,6 @@
 
 #include "geometry/predicates.h"
 
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,25 +9,10 @@
 
 #include "geometry/bounded.h"
 #include "src/stress/placement.h"
+#include "tests/geometry/rational_points.h"
 
 namespace exitance {
 namespace {
-
-using Q = CGAL::Exact_predicates_exact_constructions_kernel::FT;
-using Point = std::array<Q, 3>;
-
-Point exact(const Vec3& v) {
-  return {Q(v.x), Q(v.y), Q(v.z)};
-}
-Point operator-(const Point& a, const Point& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Q determinant(const Point& a, const Point& b, const Point& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
-int sign(const Q& q) {
-  return static_cast<int>(CGAL::sign(q));
-}
 
 struct Question {
   Vec3 x;

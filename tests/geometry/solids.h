@@ -11,6 +11,13 @@ namespace exitance {
 
 using Faces = std::vector<Polygon>;
 
+/// A turn and a shift that round coordinates off all lattices.
+inline Vec3 turned(const Vec3& p) {
+  const double s = 1.0 / 7;
+  return Vec3{0.1, 0.2, 0.3} + p.x * Vec3{2 * s, 3 * s, 6 * s} + p.y * Vec3{-6 * s, -2 * s, 3 * s} +
+         p.z * Vec3{3 * s, -6 * s, 2 * s};
+}
+
 /// Over a polygon of the lattice, counter-clockwise from above.
 inline Faces prism(const std::vector<std::array<int, 2>>& base, int bottom, int top) {
   const auto ring = [&](int z) {

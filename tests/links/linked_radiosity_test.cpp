@@ -177,7 +177,8 @@ TEST(LinkedRadiosity, TheOnlyLightGoesOut) {
   const LinkUpdate off = links.update(std::vector<Edit>{{Operation::change, 1, {}, {}, {{MaterialChange::kEvery, 2}}}},
                                       LinkMethod::hvt_peu);
   EXPECT_TRUE(off.exchange.converged);
-  const LinkError error = link_error(links.tree(), links.elements(), 1, links.converged(), lit, links.radiosity().B());
+  const ConvergenceError error =
+      link_error(links.tree(), links.elements(), 1, links.converged(), lit, links.radiosity().B());
   EXPECT_LT(error.all, 1e-6);
   EXPECT_LT(error.worst_1_percent, 1e-6);
 }

@@ -1,0 +1,26 @@
+#include "src/cli/frame_files.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "src/output/vtk.h"
+#include "src/scene/scene_check.h"
+
+namespace exitance {
+
+void write_frame(const std::filesystem::path& folder, const DynamicScene& scene, const Frame& frame,
+                 const std::function<Image(const Camera&)>& picture) {
+  const Camera camera = !scene.camera_path.empty() ? camera_at(scene.camera_path, frame.time)
+                        : scene.scene.camera       ? *scene.scene.camera
+                                                   : default_camera(frame.faces.points(), is_closed(scene.scene));
+  const std::string name = fmt::format("frame_{:03}", frame.number);
+  write_png(folder / (name + ".png"), picture(camera));
+  VtkArray exitance{"B", scene.scene.unit, {}, frame.B};
+  if (frame.bands == 3) exitance.components = {"R", "G", "B"};
+  for (std::uint32_t b = 0; frame.bands != 1 && frame.bands != 3 && b < frame.bands; ++b)
+    exitance.components.push_back(fmt::format("band {}", b));
+  write_vtp(folder / (name + ".vtp"), frame.faces, {&exitance, 1});
+}
+
+}  // namespace exitance
