@@ -34,6 +34,9 @@ class Chart {
     v_ = cross(axis_, u_);
   }
 
+  /// Of unit length, to the middle of the source's cone.
+  const Vec<double>& axis() const { return axis_; }
+
   template <class Real>
   ChartBox box_of(const Cone<Real>& cone) const {
     ChartBox box;

@@ -382,7 +382,7 @@ class Row {
   void fill(const ConeSide<Real>& side, const Corners<Real>& corners, const ViewFrame& frame, StageCounts& counts) {
     const std::size_t n = corners.block_count();
     if (blocks_.size() < n) blocks_.resize(n);
-    kept_positive_ = kept_negative_ = not_positive_ = not_negative_ = 0;
+    SignBytes kept_positive = 0, kept_negative = 0, not_positive = 0, not_negative = 0;
     for (std::size_t b = 0; b < n; ++b) {
       const SignBytes present = corners.present(b), kept = corners.block(b).kept;
       Block& row = blocks_[b];
@@ -391,11 +391,15 @@ class Row {
       if (unsure != 0) decide(unsure, side, corners, b, row, frame, counts);
       counts.filter += static_cast<std::uint64_t>(std::popcount(present & ~unsure));
       const SignBytes positive = positive_bytes(row.signs), negative = negative_bytes(row.signs);
-      kept_positive_ |= positive & kept;
-      kept_negative_ |= negative & kept;
-      not_positive_ |= present & ~positive;
-      not_negative_ |= present & ~negative;
+      kept_positive |= positive & kept;
+      kept_negative |= negative & kept;
+      not_positive |= present & ~positive;
+      not_negative |= present & ~negative;
     }
+    any_positive_ = kept_positive != 0;
+    any_negative_ = kept_negative != 0;
+    all_positive_ = not_positive == 0;
+    all_negative_ = not_negative == 0;
   }
 
   int sign(std::size_t k) const { return sign_byte(blocks_[k / kLanes].signs, k % kLanes); }
@@ -405,11 +409,11 @@ class Row {
   }
 
   /// Whether some corner of the cone, those that were cut off left aside, has the sign.
-  bool any_positive() const { return kept_positive_ != 0; }
-  bool any_negative() const { return kept_negative_ != 0; }
+  bool any_positive() const { return any_positive_; }
+  bool any_negative() const { return any_negative_; }
   /// Whether all corners, cut off or not, have the sign.
-  bool all_positive() const { return not_positive_ == 0; }
-  bool all_negative() const { return not_negative_ == 0; }
+  bool all_positive() const { return all_positive_; }
+  bool all_negative() const { return all_negative_; }
 
  private:
   struct alignas(64) Block {
@@ -449,7 +453,7 @@ class Row {
   }
 
   std::vector<Block> blocks_;
-  SignBytes kept_positive_ = 0, kept_negative_ = 0, not_positive_ = 0, not_negative_ = 0;
+  bool any_positive_ = false, any_negative_ = false, all_positive_ = false, all_negative_ = false;
 };
 
 /// Narrows the stretch to where the linear function from a (at 0) to b (at 1) is positive. Both zero is the caller's

@@ -17,6 +17,7 @@
 // coincide, there is no silhouette, and the solid's facets must be taken one by one.
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "geometry/cone.h"
@@ -25,10 +26,15 @@ namespace exitance {
 
 template <class Real>
 struct Silhouette {
-  Cone<Real> cone;                                 ///< its edges, in any order; the solid on their inner sides
-  std::vector<std::vector<Stretch<Real>>> hidden;  ///< of each, what the solid itself covers on its outer side
-  std::vector<bool> is_hidden;                     ///< whether that is all of it
-  bool is_usable = false;                          ///< above the horizon, without edges that coincide
+  /// What the solid itself covers of an edge, on its outer side.
+  struct Hidden {
+    bool is_known = false;
+    bool is_all = false;
+    std::vector<Stretch<Real>> stretches;
+  };
+  Cone<Real> cone;             ///< its edges, in any order; the solid on their inner sides
+  std::vector<Hidden> hidden;  ///< of each, once it is asked for (hidden_of)
+  bool is_usable = false;      ///< above the horizon, without edges that coincide
 };
 
 /// What the functionals of one view are evaluated with.
@@ -155,27 +161,34 @@ inline bool coincide(const Vec3& x, const ViewPlane& a, const ViewPlane& b) {
   return run_along(*b.c, *b.d) && run_along(*a.c, *b.d) && run_along(*b.c, *a.d);
 }
 
-/// Sets what the silhouette's edges hide of each other, once its cone is set.
+/// Whether edges of the silhouette coincide. Those that do have one and the same side, so that each component of its unit
+/// normal, known to within 1.1 error / |m| and 4 roundings, sorts them next to each other.
 template <class Real>
-void find_hidden(Silhouette<Real>& silhouette, const Evaluation& evaluation) {
-  const Cone<Real>& cone = silhouette.cone;
-  silhouette.hidden.assign(cone.sides.size(), {});
-  silhouette.is_hidden.assign(cone.sides.size(), false);
-  LayersOverEdge<Real> layers;
-  Row<Real> row;
-  for (std::size_t k = 0; k < cone.sides.size(); ++k) {
-    const ConeSide<Real>& edge = cone.sides[k];
-    row.fill(edge, cone.corners, evaluation.frame, evaluation.counts);
-    for (std::size_t j = 0; j < cone.sides.size(); ++j) {
-      const ConeSide<Real>& other = cone.sides[j];
-      const bool in_one_plane = j != k && row.sign(other.from) == 0 && row.sign(other.to) == 0;
-      if (in_one_plane && coincide(evaluation.frame.x, edge.exact, other.exact)) {
-        silhouette.is_usable = false;
-        return;
-      }
-    }
-    silhouette.is_hidden[k] = layers.find(cone, edge, silhouette, Tie::own_edge, evaluation, silhouette.hidden[k]);
+bool has_edges_that_coincide(const Silhouette<Real>& silhouette, const Evaluation& evaluation) {
+  const auto& sides = silhouette.cone.sides;
+  struct Range {
+    double lo, hi;
+    std::uint32_t edge;
+  };
+  std::vector<Range> ranges;
+  ranges.reserve(sides.size());
+  for (std::uint32_t k = 0; k < sides.size(); ++k) {
+    const ConeSide<Real>& side = sides[k];
+    const double x = static_cast<double>(Real(side.m.x / side.length)),
+                 error = static_cast<double>(Real(side.error / side.length)) * 1.1 + 8 * kRoundoff;
+    ranges.push_back(error < 0.01 ? Range{x - error, x + error, k} : Range{-2, 2, k});
   }
+  std::ranges::sort(ranges, {}, [](const Range& r) { return std::pair(r.lo, r.edge); });
+  const auto in_plane_of = [&](const ConeSide<Real>& side, std::uint32_t corner) {
+    return value_at(side, silhouette.cone.corners, corner, evaluation.frame, evaluation.counts).sign == 0;
+  };
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    for (std::size_t j = i + 1; j < ranges.size() && ranges[j].lo <= ranges[i].hi; ++j) {
+      const ConeSide<Real>&a = sides[ranges[i].edge], &b = sides[ranges[j].edge];
+      if (in_plane_of(a, b.from) && in_plane_of(a, b.to) && coincide(evaluation.frame.x, a.exact, b.exact)) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace exitance

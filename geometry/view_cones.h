@@ -53,6 +53,20 @@ class ViewCones {
     return *silhouette;
   }
 
+  /// What that shell hides of one of its own edges.
+  const typename Silhouette<Real>::Hidden& hidden_of(std::uint32_t shell, std::size_t edge) {
+    Silhouette<Real>& silhouette = *silhouettes_[shell].second;
+    auto& hidden = silhouette.hidden[edge];
+    if (!hidden.is_known) {
+      hidden.is_known = true;
+      hidden.stretches.clear();
+      const ViewFrame frame{view_.receiver().point, view_.receiver().normal, {}};
+      hidden.is_all = layers_.find(silhouette.cone, silhouette.cone.sides[edge], silhouette, Tie::own_edge,
+                                   {frame, view_.counts(), 0x1p-46}, hidden.stretches);
+    }
+    return hidden;
+  }
+
   /// A facet's cone with the sides below the horizon.
   void set_whole(Cone<Real>& cone, std::uint32_t facet) {
     const auto loop = soup_.corners(soup_.facets()[facet]);
@@ -117,7 +131,9 @@ class ViewCones {
     silhouette.is_usable = std::ranges::all_of(vertices, [&](std::uint32_t v) { return view_.horizon(v) > 0; });
     if (!silhouette.is_usable) return;
     const ViewFrame frame{view_.receiver().point, view_.receiver().normal, {}};
-    find_hidden(silhouette, {frame, view_.counts(), 0x1p-46});
+    silhouette.is_usable = !has_edges_that_coincide<Real>(silhouette, {frame, view_.counts(), 0x1p-46});
+    silhouette.hidden.resize(silhouette.cone.sides.size());
+    for (auto& hidden : silhouette.hidden) hidden.is_known = false;
   }
 
   void set_silhouette(Cone<Real>& cone, std::uint32_t shell) {
@@ -174,6 +190,7 @@ class ViewCones {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ring_;
   std::vector<std::uint32_t> next_;
   std::vector<std::pair<std::uint32_t, std::unique_ptr<Silhouette<Real>>>> silhouettes_;  // by shell, with their epochs
+  LayersOverEdge<Real> layers_;
 };
 
 }  // namespace exitance

@@ -112,7 +112,7 @@ struct Viewpoint::State {
   bool find_candidates(std::uint32_t facet);
   bool add_flush_faces(std::uint32_t facet);
   bool add_items(std::span<const std::uint32_t> items);
-  bool add_silhouettes();
+  void choose_silhouettes();
   void forget_silhouettes() {
     for (const std::uint32_t s : by_silhouette) in_silhouette[s] = 0;
     by_silhouette.clear();
@@ -190,6 +190,7 @@ bool Viewpoint::State::add_candidate(const OccluderId& occluder) {
 bool Viewpoint::State::hidden_by_recent() {
   for (std::size_t k = 0; k < blockers.size(); ++k) {
     const OccluderId blocker = blockers[k];
+    if (!region.stands_before_the_middle(blocker)) continue;
     if (blocker.shell != kNone &&
         region.place_of(soup.shells()[blocker.shell]) != VisibleRegion<double>::Place::in_front) {
       continue;
@@ -232,14 +233,15 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   if (!add_flush_faces(facet)) return false;
   found.clear();
   soup.index().find(half_spaces, box, found);
-  if (!add_silhouettes()) return false;
   soup.prefetch(found);
-  return add_items(found);
+  choose_silhouettes();
+  return std::ranges::all_of(by_silhouette, [&](std::uint32_t s) { return add_candidate({kNone, s}); }) &&
+         add_items(found);
 }
 
-/// Adds the silhouettes of shells of which many facets were found; their facets are then not asked for. False when one
-/// hides all of the source. A source's own shell lies on both sides of its plane, or not in front of it at all.
-bool Viewpoint::State::add_silhouettes() {
+/// Chooses the shells of which many facets were found, to be taken by their silhouettes; their facets are then not asked
+/// for. A source's own shell lies on both sides of its plane, or not in front of it at all.
+void Viewpoint::State::choose_silhouettes() {
   forget_silhouettes();
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
   const std::uint32_t own = soup.facets()[region.source_facet()].shell;
@@ -255,7 +257,6 @@ bool Viewpoint::State::add_silhouettes() {
     return !is_taken;
   });
   for (const std::uint32_t s : by_silhouette) in_silhouette[s] = 1;
-  return std::ranges::all_of(by_silhouette, [&](std::uint32_t s) { return add_candidate({kNone, s}); });
 }
 
 /// What lies in the source's plane covers it without reaching in front of it: of a convex shell on the far side, which

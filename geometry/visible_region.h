@@ -74,6 +74,19 @@ class VisibleRegion {
     return whole;
   }
 
+  /// Whether an occluder that may be added has a chance to hide all of the source, as far as rounded numbers tell: a
+  /// convex one must hide its middle.
+  bool stands_before_the_middle(const OccluderId& occluder) {
+    if (occluder.shell != kNone && !soup_.shells()[occluder.shell].convex) return true;
+    if (occluder.shell == kNone && view_.facing(occluder.facet) == 0) return false;
+    const Cone<Real>& cone =
+        occluder.shell == kNone ? cones_.of_facet(occluder.facet) : cones_.of_shell(occluder.shell);
+    const Vec<double>& middle = chart_.axis();
+    return std::ranges::all_of(cone.sides, [&](const ConeSide<Real>& side) {
+      return Real(middle.x) * side.m.x + Real(middle.y) * side.m.y + Real(middle.z) * side.m.z > 0;
+    });
+  }
+
   /// Adds an occluder. A shell must have the point outside its box and be all on the point's side of the source's plane
   /// (place_of), and one that is not convex must have a usable silhouette.
   Effect add(const OccluderId& occluder);
@@ -528,7 +541,6 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_silhouette(Added& 
   for (std::size_t k = 0; k < cone.sides.size(); ++k) {
     const ConeSide<Real>& edge = cone.sides[k];
     Stretch<Real> stretch = edge.stretch;
-    stretch.empty = added.silhouette->is_hidden[k];
     for (std::size_t j = 0; j < source_.sides.size() && !stretch.empty; ++j) {
       const Row<Real>& row = source_rows_[j];
       if (row.all_positive()) continue;
@@ -538,6 +550,7 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_silhouette(Added& 
         narrow_along(stretch, row, cone, edge, source_.sides[j]);
       }
     }
+    stretch.empty = stretch.empty || cones_.hidden_of(added.shell, k).is_all;
     added.bounds = added.bounds || !stretch.empty;
     added.edges.push_back(stretch);
   }
@@ -644,7 +657,7 @@ void VisibleRegion<Real>::for_each_arc(const Sink& sink) {
     if (covered_.size() < n) covered_.resize(n);
     for (std::size_t k = 0; k < n; ++k) {
       covered_[k].clear();
-      if (a.silhouette) covered_[k] = a.silhouette->hidden[k];
+      if (a.silhouette && !a.edges[k].empty) covered_[k] = cones_.hidden_of(a.shell, k).stretches;
     }
     open_ = a.edges;
     ChartBox box;
