@@ -57,13 +57,15 @@ class Chart {
     }
   }
 
-  /// Keeps the box of item i; items are set in order.
+  /// Keeps the box of item i.
   void set(std::size_t i, const ChartBox& box) {
-    for (auto* v : {&x0_, &x1_, &y0_, &y1_}) v->resize(i);
-    x0_.push_back(box.x0);
-    x1_.push_back(box.x1);
-    y0_.push_back(box.y0);
-    y1_.push_back(box.y1);
+    if (x0_.size() <= i) {
+      for (auto* v : {&x0_, &x1_, &y0_, &y1_}) v->resize(2 * i + 8);
+    }
+    x0_[i] = box.x0;
+    x1_[i] = box.x1;
+    y0_[i] = box.y0;
+    y1_[i] = box.y1;
   }
 
   /// Calls f(j), ascending, for items j ≠ i of the first n whose box meets the box, until one says true.

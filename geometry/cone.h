@@ -457,10 +457,10 @@ class Row {
 };
 
 /// Narrows the stretch to where the linear function from a (at 0) to b (at 1) is positive. Both zero is the caller's
-/// case. refine(a, b, accuracy): called when the error of the crossing exceeds `bearable`, with ever better accuracies,
-/// to make a and b known to that or better.
+/// case. refine(a, b, accuracy): called when the error of the crossing times `weight` exceeds 1, with ever better
+/// accuracies, to make a and b known to that or better.
 template <class Real, class Refine>
-void narrow(Stretch<Real>& stretch, Signed<Real> a, Signed<Real> b, const Real& bearable, const Refine& refine) {
+void narrow(Stretch<Real>& stretch, Signed<Real> a, Signed<Real> b, const Real& weight, const Refine& refine) {
   using std::fabs;
   if (a.sign <= 0 && b.sign <= 0) {
     stretch.empty = true;
@@ -477,7 +477,7 @@ void narrow(Stretch<Real>& stretch, Signed<Real> a, Signed<Real> b, const Real& 
     };
     find_crossing();
     for (const double accuracy : {0.5, 0x1p-44}) {
-      if (!(error > bearable)) break;
+      if (!(error * weight > 1)) break;
       refine(a, b, accuracy);
       find_crossing();
     }

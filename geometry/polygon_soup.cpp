@@ -290,17 +290,11 @@ void PolygonSoup::build_index() {
 
 void PolygonSoup::prefetch(std::span<const std::uint32_t> items) const {
   constexpr std::size_t kLine = 64;
-  const auto fetch = [](const void* first, std::size_t size) {
-    for (std::size_t k = 0; k < size; k += kLine) __builtin_prefetch(static_cast<const char*>(first) + k);
-  };
-  for (const std::uint32_t item : items) {
-    if (item < facets_.size()) fetch(&facets_[item], sizeof(Facet));
-  }
   for (const std::uint32_t item : items) {
     if (item >= facets_.size()) continue;
-    const Facet& f = facets_[item];
-    fetch(&corners_[f.first], f.count * sizeof(Corner));
-    fetch(&first_corners_[item], sizeof(FirstCorners));
+    __builtin_prefetch(&facets_[item]);
+    const char* corners = reinterpret_cast<const char*>(&first_corners_[item]);
+    for (std::size_t k = 0; k < sizeof(FirstCorners); k += kLine) __builtin_prefetch(corners + k);
   }
 }
 

@@ -50,26 +50,29 @@ class Sieve {
     near_error_ = near_per_length_ * size_of(to_x);
   }
 
+  /// Whether a facet surely lies outside of a side of the source's cone, or below the horizon.
+  bool is_outside(const FirstCorners& facet) const {
+    if (!facet.all) return false;
+    const Seen seen = see(facet);
+    for (const Side& side : sides_) {
+      const Doubles value = side.m.x * seen.x + side.m.y * seen.y + side.m.z * seen.z;
+      if (all((value < -(side.per_length * seen.size)) | seen.is(side.from) | seen.is(side.to))) return true;
+    }
+    return false;
+  }
+
   enum class Verdict : std::uint8_t {
-    held_back,  ///< surely hides nothing of the source: it lies outside of the source's cone, below the horizon or
-                ///< behind the source's plane, or the source on the near side of its plane or outside of a side of its
-                ///< cone
+    held_back,  ///< surely hides nothing of the source: it lies behind the source's plane, or the source on the near
+                ///< side of its plane or outside of a side of its cone
     between,  ///< surely lies on the near side of the source's plane, and part of the source on the far side of its own
     unsure
   };
 
-  /// facing: the side from which the facet is seen, ±1.
+  /// Of a facet that is not outside. facing: the side from which it is seen, ±1.
   Verdict judge(const Plane& plane, const FirstCorners& facet, int facing) const {
     if (!facet.all) return Verdict::unsure;
-    const Doubles x = load(facet.x.data()) - x_.x, y = load(facet.y.data()) - x_.y, z = load(facet.z.data()) - x_.z;
-    const Doubles size = magnitude(x) + magnitude(y) + magnitude(z);  // at least |w|
-    Numbers vertex;
-    std::memcpy(&vertex, facet.vertex.data(), sizeof vertex);
-    const auto is = [&](std::uint32_t number) { return __builtin_convertvector(vertex == number, Mask); };
-    for (const Side& side : sides_) {
-      const Doubles value = side.m.x * x + side.m.y * y + side.m.z * z;
-      if (all((value < -(side.per_length * size)) | is(side.from) | is(side.to))) return Verdict::held_back;
-    }
+    const Seen seen = see(facet);
+    const auto& [x, y, z, size, vertex] = seen;
     // The facet's own plane and sides, w × w' from each corner to the next. |w_y w'_z| + |w_z w'_y| and its like are at
     // most |w|₁|w'|₁; with two roundings of differences, of a product and of the subtraction, and four of the product
     // with a corner, all in all 8 u |w|₁|w'|₁|v|₁. Twice that is given.
@@ -85,7 +88,7 @@ class Sieve {
     bool source_is_nearer = true, source_reaches_beyond = false;
     Mask outside = ~Mask{}, behind = over_plane < -over_error;
     for (const SourceCorner& v : corners_) {
-      const Mask own = is(v.vertex);
+      const Mask own = seen.is(v.vertex);
       behind |= own;
       const double value = n.x * v.w.x + n.y * v.w.y + n.z * v.w.z + height,
                    error = per_length * (v.size + away) + 2 * plane.normal_size * v.error;
@@ -101,6 +104,19 @@ class Sieve {
  private:
   using Mask = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
   using Numbers = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
+
+  /// A facet's corners from the point of view; size: at least |w|.
+  struct Seen {
+    Doubles x, y, z, size;
+    Numbers vertex;
+    Mask is(std::uint32_t number) const { return __builtin_convertvector(vertex == number, Mask); }
+  };
+  Seen see(const FirstCorners& facet) const {
+    const Doubles x = load(facet.x.data()) - x_.x, y = load(facet.y.data()) - x_.y, z = load(facet.z.data()) - x_.z;
+    Seen seen{x, y, z, magnitude(x) + magnitude(y) + magnitude(z), {}};
+    std::memcpy(&seen.vertex, facet.vertex.data(), sizeof seen.vertex);
+    return seen;
+  }
 
   static Doubles magnitude(const Doubles& v) { return v < 0 ? -v : v; }
   /// Of the next corner in place of each.

@@ -41,7 +41,14 @@ struct Silhouette {
 struct Evaluation {
   const ViewFrame& frame;
   StageCounts& counts;
-  double bearable_angle;  ///< of a crossing [rad]
+  double per_bearable_angle;  ///< of a crossing [1/rad]
+
+  /// What the error of a crossing on an edge is to be multiplied by, to exceed 1 where it is not bearable: beyond the
+  /// angle, or 2^-20 of the edge.
+  template <class Real>
+  Real weight(const Real& sweep) const {
+    return Real(sweep * Real(per_bearable_angle) + Real(0x1p20));
+  }
 };
 
 /// Which way ties are broken between an edge and a silhouette.
@@ -117,7 +124,7 @@ class LayersOverEdge {
   static Change crossing(const ConeSide<Real>& crossed, const Cone<Real>& cone, const ConeSide<Real>& edge,
                          const Signed<Real>& at_from, const Signed<Real>& at_to, const Evaluation& evaluation) {
     Stretch<Real> stretch;
-    narrow(stretch, at_from, at_to, Real(evaluation.bearable_angle / (edge.sweep + evaluation.bearable_angle * 0x1p20)),
+    narrow(stretch, at_from, at_to, evaluation.weight(edge.sweep),
            [&](Signed<Real>& a, Signed<Real>& b, double accuracy) {
              if constexpr (!std::is_floating_point_v<Real>) return;
              const auto refined = [&](std::uint32_t end) {

@@ -62,7 +62,7 @@ class ViewCones {
       hidden.stretches.clear();
       const ViewFrame frame{view_.receiver().point, view_.receiver().normal, {}};
       hidden.is_all = layers_.find(silhouette.cone, silhouette.cone.sides[edge], silhouette, Tie::own_edge,
-                                   {frame, view_.counts(), 0x1p-46}, hidden.stretches);
+                                   {frame, view_.counts(), 0x1p46}, hidden.stretches);
     }
     return hidden;
   }
@@ -131,7 +131,7 @@ class ViewCones {
     silhouette.is_usable = std::ranges::all_of(vertices, [&](std::uint32_t v) { return view_.horizon(v) > 0; });
     if (!silhouette.is_usable) return;
     const ViewFrame frame{view_.receiver().point, view_.receiver().normal, {}};
-    silhouette.is_usable = !has_edges_that_coincide<Real>(silhouette, {frame, view_.counts(), 0x1p-46});
+    silhouette.is_usable = !has_edges_that_coincide<Real>(silhouette, {frame, view_.counts(), 0x1p46});
     silhouette.hidden.resize(silhouette.cone.sides.size());
     for (auto& hidden : silhouette.hidden) hidden.is_known = false;
   }

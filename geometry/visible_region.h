@@ -62,7 +62,7 @@ class VisibleRegion {
   void will_add_only(std::span<const std::uint32_t> facets) { added_only_ = facets; }
 
   /// How wrong [rad] the end of an arc may be before exact arithmetic is asked; at first 2^-46.
-  void set_bearable_angle(double angle) { bearable_angle_ = angle; }
+  void set_bearable_angle(double angle) { per_bearable_angle_ = 1 / angle; }
 
   enum class Effect { none, part, whole };
 
@@ -139,7 +139,7 @@ class VisibleRegion {
   ConeSide<Real> closing_cut(const Plane& T, int facing_occluder) const;
   bool cover(const Added& a, const Added& b, bool b_first);
   bool cover_by_silhouette(const Added& a, const Added& b);
-  Evaluation evaluation() { return {frame_, view_.counts(), bearable_angle_}; }
+  Evaluation evaluation() { return {frame_, view_.counts(), per_bearable_angle_}; }
 
   struct FacedPlane {
     const Plane& plane;
@@ -179,7 +179,7 @@ class VisibleRegion {
   std::uint32_t source_facet_ = kNone;
   const Plane* source_plane_ = nullptr;
   int facing_source_ = 1;
-  double bearable_angle_ = 0x1p-46;
+  double per_bearable_angle_ = 0x1p46;
   std::optional<std::span<const std::uint32_t>> added_only_;
   Cone<Real> source_;
   std::vector<std::unique_ptr<Added>> added_;  // count_ of them in use; they may point into themselves
@@ -280,7 +280,7 @@ ConeSide<Real> VisibleRegion<Real>::closing_cut(const Plane& T, int facing_occlu
 template <class Real>
 void VisibleRegion<Real>::narrow_to_crossing(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone,
                                              const ConeSide<Real>& edge, const ConeSide<Real>& side) {
-  narrow(stretch, row.at(edge.from), row.at(edge.to), Real(bearable_angle_ / (edge.sweep + bearable_angle_ * 0x1p20)),
+  narrow(stretch, row.at(edge.from), row.at(edge.to), evaluation().weight(edge.sweep),
          [&](Signed<Real>& a, Signed<Real>& b, double accuracy) {
            if constexpr (!std::is_floating_point_v<Real>) return;
            a = refined_value_at(side, cone.corners.exact(edge.from), frame_, view_.counts(), accuracy);
@@ -329,6 +329,9 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add(const OccluderId& 
 
 template <class Real>
 typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_t facet) {
+  if constexpr (std::is_same_v<Real, double>) {
+    if (sieve_.is_outside(soup_.first_corners(facet))) return Effect::none;
+  }
   const auto facets = soup_.facets();
   const Facet& f = facets[facet];
   const int facing = view_.facing(facet);
