@@ -157,9 +157,10 @@ TEST(StressRun, AnExceptionBreaksAProperty) {
 }
 
 TEST(StressRun, StopsMakingFailuresSmall) {
-  StressOptions options = asking({}, 180);
+  StressOptions options = asking({}, 60);
   options.families = {"gap"};
   options.contenders = {careless()};
+  options.failures_kept = 3;
   const StressReport whole = run_stress(options);
   ASSERT_FALSE(whole.failures.empty());
   std::atomic<bool> stopped = false;
@@ -167,7 +168,7 @@ TEST(StressRun, StopsMakingFailuresSmall) {
   options.stop = [&] { return stopped.load(); };
   const StressReport report = run_stress(options);
   EXPECT_FALSE(report.complete);
-  EXPECT_EQ(report.questions, 180u);
+  EXPECT_EQ(report.questions, 60u);
   ASSERT_EQ(report.failures.size(), whole.failures.size());
   std::size_t larger = 0;
   for (std::size_t k = 0; k < whole.failures.size(); ++k) {
