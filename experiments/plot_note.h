@@ -5,12 +5,13 @@
 
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include "src/output/manifest.h"
 
 namespace exitance {
 
-/// Processor, program, compiler and libraries.
+/// Processor and its cores, program, compiler and libraries.
 inline std::string plot_note() {
   std::string processor = "unknown processor";
   std::ifstream info("/proc/cpuinfo");
@@ -20,9 +21,9 @@ inline std::string plot_note() {
     break;
   }
   const Manifest build = build_manifest();
-  return fmt::format("{}; exitance {} ({}), {}, Embree {}, CGAL {}", processor, build.version,
-                     build.commit.substr(0, 7), build.compiler, build.libraries.at("Embree"),
-                     build.libraries.at("CGAL"));
+  return fmt::format("{}, {} cores; exitance {} ({}), {}, Embree {}, CGAL {}", processor,
+                     std::thread::hardware_concurrency(), build.version, build.commit.substr(0, 7), build.compiler,
+                     build.libraries.at("Embree"), build.libraries.at("CGAL"));
 }
 
 }  // namespace exitance

@@ -41,4 +41,14 @@ inline std::optional<double> x_at(const Curve& curve, double value) {
   return curve.back().first * std::pow(value / curve.back().second, 1 / power);
 }
 
+/// The y of a curve at an x, by the power between the two points around it. None outside the curve.
+inline std::optional<double> y_at(const Curve& curve, double x) {
+  for (std::size_t k = 1; k < curve.size(); ++k) {
+    const auto& [x0, y0] = curve[k - 1];
+    const auto& [x1, y1] = curve[k];
+    if (x0 <= x && x <= x1 && x0 < x1) return y0 * std::pow(y1 / y0, std::log(x / x0) / std::log(x1 / x0));
+  }
+  return {};
+}
+
 }  // namespace exitance

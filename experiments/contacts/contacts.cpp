@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,8 @@ void answer(std::uint32_t polygons, std::uint32_t most_rays, CsvTable& table, Pl
   const PolygonSoup soup = make_soup(scene);
   const PatchMesh mesh = make_patch_mesh(scene, soup, {});
   const PointRows exact = point_rows(ExactVisibility(mesh, soup), 0, mesh.elements.size());
+  if (!(exact.statistics.closure_max_defect < 1e-12))
+    throw std::runtime_error(fmt::format("exact rows miss closure by {}", exact.statistics.closure_max_defect));
   for (const Way& way : ways()) {
     Curve curve;
     RayOptions options = way.options;

@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/plot_note.h"
+#include "src/output/heat_map.h"
 #include "src/scene/patch_mesh.h"
 #include "src/visibility/exact_visibility.h"
 #include "src/visibility/ray_caster.h"
@@ -232,11 +234,52 @@ void answer(const Kind& kind, double patch_size, CsvTable& table) {
   row("centre", leak_by(RaySampledVisibility(mesh, soup, {.estimator = Estimator::centre}), 0, kind.on_the_floor));
 }
 
+/// The largest leak of each kind and method, and what exact visibility misses of closure. White fields: nothing at all.
+HeatMap picture(const CsvTable& table) {
+  HeatMap map;
+  map.title = "Light through closed shells: largest leak";
+  map.scale_label = "leak, closure defect";
+  map.note = plot_note();
+  struct Column {
+    std::string name, method;
+    std::size_t field;
+  };
+  constexpr std::size_t kLargest = 3, kClosure = 4;
+  const std::vector<std::pair<std::string, std::vector<Column>>> panels{
+      {"exact", {{"leak", "exact", kLargest}, {"closure", "exact", kClosure}}},
+      {"rays, robust",
+       {{"shadow", "shadow rays robust", kLargest},
+        {"all", "hemisphere robust", kLargest},
+        {"edges", "rays at edges robust", kLargest}}},
+      {"rays, fast",
+       {{"shadow", "shadow rays fast", kLargest},
+        {"all", "hemisphere fast", kLargest},
+        {"edges", "rays at edges fast", kLargest}}},
+      {"one ray", {{"centre", "centre", kLargest}}}};
+  for (const Kind& kind : kinds()) map.row_names.push_back(kind.name);
+  for (const auto& [title, columns] : panels) {
+    HeatMap::Panel panel{title, {}, {}};
+    for (const Column& column : columns) panel.columns.push_back(column.name);
+    for (const std::string& kind : map.row_names) {
+      panel.rows.emplace_back();
+      for (const Column& column : columns) {
+        const auto row = std::ranges::find_if(
+            table.rows, [&](const auto& other) { return other[0] == kind && other[1] == column.method; });
+        const std::string text = row == table.rows.end() ? "-" : (*row)[column.field];
+        const double value = text == "-" ? 0 : std::stod(text);
+        panel.rows.back().push_back({value, text == "-" || value == 0 ? text : fmt::format("{:.0e}", value)});
+      }
+    }
+    map.panels.push_back(std::move(panel));
+  }
+  return map;
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Light through closed surfaces"};
   std::string out, expected;
   bool reduced = false;
-  app.add_option("-o,--output", out, "Folder for results.csv");
+  app.add_option("-o,--output", out, "Folder for results.csv and plot.svg");
   app.add_flag("--reduced", reduced, "Fewer points in the room");
   app.add_option("--check", expected, "What exact visibility and robust rays let through must be as little as there");
   CLI11_PARSE(app, argc, argv);
@@ -245,6 +288,7 @@ int run(int argc, char** argv) {
   if (!out.empty()) {
     std::filesystem::create_directories(out);
     table.write(std::filesystem::path(out) / "results.csv");
+    write_heat_map(std::filesystem::path(out) / "plot.svg", picture(table));
   }
   if (expected.empty()) return 0;
   int wrong = 0;

@@ -12,12 +12,13 @@
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/matrix_time_vs_error/matrix_truth.h"
 #include "experiments/plot_note.h"
 #include "experiments/power_law.h"
 #include "src/output/plot.h"
+#include "src/output/run_clock.h"
 #include "src/reference/contender.h"
 #include "src/reference/matrix_comparison.h"
-#include "src/reference/pair_run.h"
 #include "src/scene/furnished_room.h"
 #include "src/scene/reader.h"
 
@@ -81,17 +82,23 @@ std::vector<Series> all_series(const Subject& subject, bool reduced) {
           ray_series("one centre ray", {.estimator = Estimator::centre}, {1})};
 }
 
-void answer(const Subject& subject, bool reduced, CsvTable& table, Plot& plot) {
+void answer(const Subject& subject, bool reduced, CsvTable& table, CsvTable& truths, Plot& plot) {
   const PolygonSoup soup = make_soup(subject.scene);
   const PatchMesh mesh = make_patch_mesh(subject.scene, soup, {.patch_size = subject.patch_size});
   const ExchangeScene exchange(soup, mesh);
-  const PairRun rows = run_pairs(exchange, {.pairs = {.tolerance = subject.truth}}, nullptr);
-  const MatrixTruth truth = truth_of(rows.rows, static_cast<std::uint32_t>(exchange.size()));
+  const RunClock clock;
+  const KnownMatrix known = known_matrix(exchange, subject.truth);
+  truths.rows.push_back({subject.name, fmt::format("{}", exchange.size()), digits(subject.truth),
+                         fmt::format("{}", known.by_points), digits(known.largest_error), digits(known.rms_error),
+                         fmt::format("{:.3g}", clock.cpu_seconds())});
+  fmt::print(stderr, "{}: {} patches, errors of the truth at most {:.2g}, rms {:.2g}\n", subject.name, exchange.size(),
+             known.largest_error, known.rms_error);
+  plot.title = fmt::format("{}: {} patches", subject.name, exchange.size());
   for (const Series& series : all_series(subject, reduced)) {
     Curve curve, of_number;
     for (const Contender& contender : series.contenders) {
       const ContenderRun made = run(contender, mesh, exchange, {}, {});
-      const MatrixComparison errors = compare(truth, made.F, 0);
+      const MatrixComparison errors = compare(known.truth, made.F, 0);
       const auto of = [&](PairClass kind) { return errors.of_class[static_cast<std::size_t>(kind)]; };
       table.rows.push_back({subject.name, series.name, contender.name, fmt::format("{}", exchange.size()),
                             digits(errors.facing.rms), digits(errors.facing.largest),
@@ -114,7 +121,7 @@ int ask(int argc, char** argv) {
   std::vector<std::string> names;
   bool reduced = false;
   app.add_option("--scene", names, "Only these");
-  app.add_option("-o,--output", out, "Folder for results.csv and plots");
+  app.add_option("-o,--output", out, "Folder for results.csv, truth.csv and plots");
   app.add_flag("--reduced", reduced, "The first scene, few rays");
   app.add_option("--check", expected, "Compare errors with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
@@ -122,16 +129,19 @@ int ask(int argc, char** argv) {
   CsvTable table{{"scene", "method", "rays_or_tolerance", "patches", "rms_error", "largest_error", "largest_of_999",
                   "largest_of_open", "rms_of_partial", "rays", "queries", "cpu_seconds"},
                  {}};
+  CsvTable truths{{"scene", "patches", "tolerance", "pairs_by_points", "largest_error", "rms_error", "cpu_seconds"},
+                  {}};
   std::size_t drawn = 0;
   for (const Subject& subject : subjects()) {
     ++drawn;
     if (!names.empty() && std::ranges::find(names, subject.name) == names.end()) continue;
     Plot plot{subject.name, "seconds of one thread", "rms error of pairs that face each other"};
     plot.note = plot_note();
-    answer(subject, reduced, table, plot);
+    answer(subject, reduced, table, truths, plot);
     if (!out.empty()) {  // after each scene, as they take long
       std::filesystem::create_directories(out);
       table.write(std::filesystem::path(out) / "results.csv");
+      truths.write(std::filesystem::path(out) / "truth.csv");
       write_plot(std::filesystem::path(out) / fmt::format("plot_{}.svg", drawn), plot);
     }
     if (reduced) break;

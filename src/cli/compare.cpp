@@ -17,6 +17,7 @@
 #include "src/cli/memory_limit.h"
 #include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
+#include "src/cli/ray_settings.h"
 #include "src/cli/scene_options.h"
 #include "src/cli/verbs.h"
 #include "src/output/faces.h"
@@ -36,6 +37,14 @@ namespace {
 std::uint64_t bytes_of(const FormFactorMatrix& F) {
   return F.row_first.size() * sizeof(F.row_first[0]) +
          F.F.size() * (sizeof(F.column[0]) + sizeof(F.F[0]) + sizeof(F.F_error[0]));
+}
+
+/// Faults by their numbers, in words.
+std::string all_reasons() {
+  std::string text;
+  for (std::uint8_t k = 0; k <= static_cast<std::uint8_t>(Fault::unknown); ++k)
+    text += fmt::format("{}{} {}", k == 0 ? "" : "; ", k, describe(static_cast<Fault>(k)));
+  return text;
 }
 
 /// A scene cut into patches of one element each.
@@ -58,8 +67,8 @@ class Compare {
   explicit Compare(CLI::App& verb) : verb_(verb) {
     scene_.add_to(verb);
     verb.add_option("--against", names_,
-                    "Contenders, separated by commas: rays:N, rays:N:SAMPLER:ESTIMATOR, exact:TOLERANCE, or a matrix "
-                    "file (.h5, .csv, or View3D's .txt)")
+                    "Contenders, separated by commas: rays:N, rays:N:SAMPLER:ESTIMATOR:fast:untold, exact:TOLERANCE, "
+                    "or a matrix file (.h5, .csv, or View3D's .txt)")
         ->delimiter(',')
         ->required();
     verb.add_option("--reference", reference_, "Solution that B is compared with, too: of `reference` or `solve`");
@@ -75,6 +84,10 @@ class Compare {
     verb.add_option("--ray-offset", rays_.offset, "Both ends of rays off their surfaces, of the scene's radius")
         ->check(number_between(0, 1))
         ->capture_default_str();
+    verb.add_option("--replicates", rays_.replicates,
+                    "Independent estimates by so many rays, of which the mean is taken; their spread gives the error")
+        ->check(whole_number_between(1, kMostRays))
+        ->capture_default_str();
     verb.add_option("--seed", rays_.seed, "Of rays")->check(whole_number_between(0))->capture_default_str();
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
         ->check(whole_number_between(1, kMostThreads));
@@ -83,9 +96,12 @@ class Compare {
     verb.add_flag("--json", json_, "Print the report as JSON");
     verb.footer(
         "Form factors are means over patches. SAMPLER: sobol (default), owen, stratified, random. ESTIMATOR: kernel\n"
-        "(default), fraction, hemisphere, centre. Samplers and estimators are those of solve --visibility rays. Times "
-        "are\n"
-        "of one run of this program, so that their ratios count.");
+        "(default), fraction, hemisphere, centre. Both are those of solve --visibility rays. fast: without Embree's "
+        "robust\n"
+        "mode; untold: rays are not told of contacts. Times are of one run of this program, so that their ratios count.\n"
+        "\"std. error\" is what rays say of themselves. FILE.vtp has for each patch of a worst pair: contender (its place\n"
+        "in --against, from 0), rank (from 1), source (0: receiver), F, truth, difference, reason: " +
+        all_reasons() + ".");
   }
 
   void run() {
@@ -175,15 +191,17 @@ class Compare {
                                .why_no_solution = {},
                                .B = {},
                                .B_reference = {},
+                               .standard_error = run.standard_error,
                                .rays = run.rays,
                                .queries = run.queries,
                                .matrix_bytes = bytes_of(run.F),
                                .peak_memory_bytes = peak_memory_bytes(),
                                .seconds = run.seconds,
                                .cpu_seconds = run.cpu_seconds};
-    for (const WorstPair& w : entry.errors.worst) {
-      const PairClass kind = truth_matrix_.kind[w.i * truth_matrix_.patches() + w.j];
-      entry.faults.push_back(find_fault(w, kind, contender.maker(), subject.mesh, subject.exchange));
+    if (!entry.errors.worst.empty()) {
+      const FaultFinder finder(contender, subject.mesh, subject.exchange);
+      for (const WorstPair& w : entry.errors.worst)
+        entry.faults.push_back(finder.find(w, truth_matrix_.kind[w.i * truth_matrix_.patches() + w.j]));
     }
     try {
       const SolutionRecord solution = solve_matrix(subject.scene, subject.soup, subject.mesh, run.F);
@@ -199,7 +217,7 @@ class Compare {
   void write_worst(const Subject& subject) const {
     struct Side {
       std::uint32_t patch;
-      double contender, rank, source, F, truth, error;
+      double contender, rank, source, F, truth, error, reason;
     };
     std::vector<Side> sides;
     for (std::size_t c = 0; c < report_.entries.size(); ++c) {
@@ -208,24 +226,25 @@ class Compare {
         const WorstPair& w = worst[k];
         for (const bool source : {false, true}) {
           sides.push_back({source ? w.j : w.i, static_cast<double>(c), static_cast<double>(k + 1), source ? 1.0 : 0.0,
-                           w.F, w.truth, w.F - w.truth});
+                           w.F, w.truth, w.F - w.truth, static_cast<double>(report_.entries[c].faults[k])});
         }
       }
     }
     const PatchMesh& mesh = subject.mesh;
     std::ranges::stable_sort(sides, {}, [&](const Side& s) { return mesh.patches[s.patch].surface; });
     Faces faces(0);
-    std::vector<std::vector<double>> values(6);
+    std::vector<std::vector<double>> values(7);
     for (std::uint32_t k = 0; k < sides.size(); ++k) {
       const Side& s = sides[k];
       for (const ExchangeScene::Piece& piece : subject.exchange.pieces(s.patch))
         faces.add(mesh.patches[s.patch].surface, s.patch, k, piece.radiator.facets()[0].loop);
-      const std::array<double, 6> row{s.contender, s.rank, s.source, s.F, s.truth, s.error};
+      const std::array<double, 7> row{s.contender, s.rank, s.source, s.F, s.truth, s.error, s.reason};
       for (std::size_t v = 0; v < row.size(); ++v) values[v].push_back(row[v]);
     }
     const std::vector<VtkArray> arrays = {{"contender", "", {}, values[0]}, {"rank", "", {}, values[1]},
                                           {"source", "", {}, values[2]},    {"F", "", {}, values[3]},
-                                          {"truth", "", {}, values[4]},     {"difference", "", {}, values[5]}};
+                                          {"truth", "", {}, values[4]},     {"difference", "", {}, values[5]},
+                                          {"reason", "", {}, values[6]}};
     write_vtp(file_, faces, arrays);
   }
 

@@ -36,13 +36,19 @@ Json json_of(const Entry& e) {
   Json worst = Json::array();
   for (std::size_t k = 0; k < e.errors.worst.size(); ++k) {
     const WorstPair& w = e.errors.worst[k];
-    worst.push_back({{"i", w.i}, {"j", w.j}, {"F", w.F}, {"truth", w.truth}, {"reason", describe(e.faults[k])}});
+    worst.push_back({{"i", w.i},
+                     {"j", w.j},
+                     {"F", w.F},
+                     {"truth", w.truth},
+                     {"truth_error", w.truth_error},
+                     {"reason", describe(e.faults[k])}});
   }
   return {{"name", e.name},
           {"form_factor_errors", errors},
           {"solution", json_of(e.B)},
           {"solution_against_reference", json_of(e.B_reference)},
           {"why_no_solution", e.why_no_solution.empty() ? Json(nullptr) : Json(e.why_no_solution)},
+          {"mean_standard_error", e.standard_error ? number(*e.standard_error) : Json(nullptr)},
           {"rays", e.rays},
           {"queries", e.queries},
           {"seconds", e.seconds},
@@ -57,17 +63,20 @@ std::string or_dash(const std::optional<SolutionErrors>& errors, double Solution
 }
 
 std::string table(const CompareReport& r) {
-  std::string text =
-      fmt::format("\n  {:<26}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>12}{:>9}{:>9}{:>9}\n", "", "max", "99.9 %",
-                  "rms", "of open", "blocked", "partial", "B", "B worst 1%", "Mrays", "Mpoints", "CPU s");
+  std::string text = fmt::format(
+      "\n  {:<26}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>12}{:>12}{:>9}{:>9}{:>9}{:>9}\n", "", "max", "99.9 %",
+      "rms", "of open", "blocked", "partial", "B", "B worst 1%", "std. error", "Mrays", "Mpoints", "MiB", "CPU s");
   for (const Entry& e : r.entries) {
     const auto largest = [&](PairClass kind) { return e.errors.of_class[static_cast<std::size_t>(kind)].largest; };
     text += fmt::format(
-        "  {:<26}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10}{:>12}{:>9.3g}{:>9.3g}{:>9.3g}\n", e.name,
-        e.errors.facing.largest, e.errors.facing.largest_of_999, e.errors.facing.rms, largest(PairClass::open),
+        "  "
+        "{:<26}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10}{:>12}{:>12}{:>9.3g}{:>9.3g}{:>9.3g}{:>9.3g}"
+        "\n",
+        e.name, e.errors.facing.largest, e.errors.facing.largest_of_999, e.errors.facing.rms, largest(PairClass::open),
         largest(PairClass::blocked), largest(PairClass::partial), or_dash(e.B, &SolutionErrors::all),
-        or_dash(e.B, &SolutionErrors::worst_1_percent), 1e-6 * static_cast<double>(e.rays),
-        1e-6 * static_cast<double>(e.queries), e.cpu_seconds);
+        or_dash(e.B, &SolutionErrors::worst_1_percent),
+        e.standard_error ? fmt::format("{:.2e}", *e.standard_error) : "-", 1e-6 * static_cast<double>(e.rays),
+        1e-6 * static_cast<double>(e.queries), 0x1p-20 * static_cast<double>(e.matrix_bytes), e.cpu_seconds);
   }
   return text;
 }

@@ -38,8 +38,12 @@ Contender contender_named(const std::string& name, const RayOptions& defaults) {
         rays.sampler = *sampler;
       } else if (const auto estimator = estimator_named(parts[k])) {
         rays.estimator = *estimator;
+      } else if (parts[k] == "fast") {
+        rays.robust = false;
+      } else if (parts[k] == "untold") {
+        rays.contacts = false;
       } else {
-        refuse(name, parts[k] + " is neither a sampler nor an estimator");
+        refuse(name, parts[k] + " is neither a sampler nor an estimator, nor fast or untold");
       }
     }
     return {name, rays};

@@ -112,7 +112,7 @@ class Reference {
     const PolygonSoup soup = make_soup(scene);
     const Manifest build = build_manifest();
     options_.key = fmt::format("version {}\ncommit {}\ncompiler {}\n", build.version, build.commit, build.compiler);
-    options_.checkpoint = file_ + ".parts";
+    options_.checkpoint = checkpoint();
     options_.memory_limit = memory_limit_.bytes();
     options_.stop = [this, start] { return interrupted() || (time_limit_ && seconds_since(start) > *time_limit_); };
     const ReferenceSolution solution = solve(scene, soup, static_cast<unsigned>(threads));
@@ -121,11 +121,14 @@ class Reference {
   }
 
  private:
+  fs::path checkpoint() const { return file_ + ".parts"; }
+
   bool already_there(const Scene& scene) const {
     if (!fs::exists(file_)) return false;
     const SolutionRecord there = read_solution_archive(file_);
     const bool same_version = Json::parse(there.manifest).value("version", "") == build_manifest().version;
     if (there.scene_hash != scene_hash(scene) || !same_version || there.error.total > options_.error) return false;
+    clear_finished_checkpoint(checkpoint());
     print_results(
         json_ ? in_text({{"scene", there.scene}, {"error", json_of(there.error)}, {"reused", true}})
               : printable(fmt::format("{} is there already, with an error of {:.3g}\n", file_, there.error.total)));

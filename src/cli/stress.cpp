@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -65,7 +66,7 @@ class Stress {
     std::optional<tbb::global_control> limit;
     if (threads_) limit.emplace(tbb::global_control::max_allowed_parallelism, *threads_);
     catch_interrupts();
-    for (const std::string& name : contenders_) options_.contenders.push_back(point_contender_named(name));
+    for (const std::string& name : contenders_) add_contender(name);
     options_.oracle = against_ != "properties";
     options_.properties = against_ != "oracle";
     options_.stop = interrupted;
@@ -95,6 +96,14 @@ class Stress {
   }
 
  private:
+  void add_contender(const std::string& name) {
+    if (std::ranges::find(options_.contenders, name, &PointContender::name) != options_.contenders.end())
+      throw CLI::ValidationError("--contender", name + " is named twice");
+    options_.contenders.push_back(point_contender_named(name));
+    if (against_ == "properties" && !options_.contenders.back().has_properties)
+      throw CLI::ValidationError("--against", "no properties are asked of " + name + "; give --against oracle");
+  }
+
   StressReport ask() {
     ProgressDisplay display;
     options_.progress = [&](double fraction, std::string_view label) { display.show(fraction, label); };

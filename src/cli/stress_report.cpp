@@ -156,6 +156,7 @@ std::string to_json(const StressSummary& summary) {
     json["failures"].push_back({{"question", failure.question},
                                 {"contender", failure.contender},
                                 {"what", failure.what},
+                                {"exception", failure.exception.empty() ? Json(nullptr) : Json(failure.exception)},
                                 {"F", failure.F},
                                 {"truth", failure.truth ? Json(*failure.truth) : Json(nullptr)}});
   }
@@ -173,7 +174,8 @@ std::string in_words(const StressSummary& summary) {
   std::string text;
   for (const std::string& contender : summary.contenders) text += contender_in_words(summary.report, contender) + "\n";
   for (const StressFailure& failure : summary.report.failures) {
-    text += fmt::format("{}: {} of {}: F = {:.17g}", failure.contender, failure.what, failure.question, failure.F);
+    text += fmt::format("{}: {} of {}: ", failure.contender, failure.what, failure.question);
+    text += failure.exception.empty() ? fmt::format("F = {:.17g}", failure.F) : "throws: " + failure.exception;
     text += failure.truth ? fmt::format(", truth {:.17g}\n", *failure.truth) : "\n";
   }
   const StressTally total = summary.total();

@@ -13,10 +13,15 @@
 namespace exitance {
 namespace {
 
-constexpr double kWidth = 720, kHeight = 480, kLeft = 80, kRight = 210, kTop = 50, kBottom = 60;
+constexpr double kWidth = 780, kHeight = 480, kLeft = 80, kRight = 270, kTop = 50, kBottom = 60;
 /// Okabe and Ito's colours, which colour-blind people can tell apart.
 constexpr std::array<std::string_view, 7> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                       "#e69f00", "#56b4e9", "#000000"};
+/// Marks around the origin, so that series can be told apart without colours, too. Seven
+/// colours and five marks repeat together after 35 series.
+constexpr std::array<std::string_view, 5> kMarks = {
+    "<circle r=\"3\"", "<rect x=\"-3\" y=\"-3\" width=\"6\" height=\"6\"", "<path d=\"M0 -4 L3.6 3 L-3.6 3 Z\"",
+    "<path d=\"M0 -4.2 L4.2 0 L0 4.2 L-4.2 0 Z\"", "<path d=\"M0 4 L3.6 -3 L-3.6 -3 Z\""};
 
 std::string escaped(const std::string& text) {
   std::string result;
@@ -89,7 +94,19 @@ void write_axes(std::ostream& out, const Plot& plot, const Axis& x, const Axis& 
              kHeight - 4, escaped(plot.note));
 }
 
-void write_series(std::ostream& out, const PlotSeries& series, std::string_view colour, const Axis& x, const Axis& y) {
+/// How a series is drawn.
+struct Pen {
+  explicit Pen(std::size_t series)
+      : colour(kColours[series % kColours.size()]), shape(kMarks[series % kMarks.size()]) {}
+
+  void mark(std::ostream& out, double x, double y) const {
+    fmt::print(out, "{} transform=\"translate({:.2f} {:.2f})\" fill=\"{}\"/>\n", shape, x, y, colour);
+  }
+
+  std::string_view colour, shape;
+};
+
+void write_series(std::ostream& out, const PlotSeries& series, const Pen& pen, const Axis& x, const Axis& y) {
   std::string path;
   bool joined = false;
   for (const auto& point : series.points) {
@@ -100,9 +117,9 @@ void write_series(std::ostream& out, const PlotSeries& series, std::string_view 
     const double px = x.at(point.first), py = y.at(point.second);
     path += fmt::format("{}{:.2f} {:.2f} ", joined ? "L" : "M", px, py);
     joined = true;
-    if (!series.dashed) fmt::print(out, "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"3\" fill=\"{}\"/>\n", px, py, colour);
+    if (!series.dashed) pen.mark(out, px, py);
   }
-  fmt::print(out, "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"{}/>\n", path, colour,
+  fmt::print(out, "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"{}/>\n", path, pen.colour,
              series.dashed ? " stroke-dasharray=\"5 4\"" : "");
 }
 
@@ -118,11 +135,12 @@ void write_plot(const std::filesystem::path& path, const Plot& plot) {
                kWidth, kHeight);
     write_axes(out, plot, x, y);
     for (std::size_t s = 0; s < plot.series.size(); ++s) {
-      const std::string_view colour = kColours[s % kColours.size()];
-      write_series(out, plot.series[s], colour, x, y);
+      const Pen pen(s);
+      write_series(out, plot.series[s], pen, x, y);
       const double at = kTop + 12 + 20 * static_cast<double>(s), left = kWidth - kRight + 14;
       fmt::print(out, "<line x1=\"{0}\" y1=\"{2}\" x2=\"{1}\" y2=\"{2}\" stroke=\"{3}\" stroke-width=\"2\"{4}/>\n",
-                 left, left + 22, at, colour, plot.series[s].dashed ? " stroke-dasharray=\"5 4\"" : "");
+                 left, left + 22, at, pen.colour, plot.series[s].dashed ? " stroke-dasharray=\"5 4\"" : "");
+      if (!plot.series[s].dashed) pen.mark(out, left + 11, at);
       fmt::print(out, "<text x=\"{}\" y=\"{}\">{}</text>\n", left + 28, at + 4, escaped(plot.series[s].name));
     }
     out << "</svg>\n";

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "src/form_factor/sampled_area_rows.h"
+#include "src/output/run_clock.h"
 #include "src/reference/matrix_file.h"
 #include "src/reference/pair_run.h"
-#include "src/output/run_clock.h"
 #include "src/scene/input_error.h"
 
 namespace exitance {
@@ -32,7 +32,10 @@ void by(const RayOptions& rays, const PatchMesh& mesh, const ExchangeScene& exch
                                              if (progress) progress(fraction, label);
                                              if (stop && stop()) stopped();
                                            });
-  result.rays = rows.statistics.rays;
+  const PointRowStatistics& statistics = rows.statistics;
+  result.rays = statistics.rays;
+  if (statistics.sampled > 0)
+    result.standard_error = statistics.standard_error_sum / static_cast<double>(statistics.sampled);
   result.F = std::move(rows.F);
 }
 

@@ -4,17 +4,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 
 #include "src/form_factor/form_factor_matrix.h"
 #include "src/form_factor/pair_form_factor.h"
 #include "src/output/progress.h"
-#include "src/reference/pair_fault.h"
 #include "src/scene/patch_mesh.h"
 #include "src/visibility/ray_options.h"
 
 namespace exitance {
+
+enum class Maker : std::uint8_t { exact, shadow_rays, hemisphere_rays, unknown };
 
 /// One way, and its name in results.
 struct Contender {
@@ -26,11 +28,12 @@ struct Contender {
 
 /// What it made and what that took.
 struct ContenderRun {
-  FormFactorMatrix F;         ///< patches × patches
-  std::uint64_t rays = 0;     ///< that were cast
-  std::uint64_t queries = 0;  ///< exact ones, from points
-  double seconds = 0;         ///< by the clock on the wall
-  double cpu_seconds = 0;     ///< of all threads
+  FormFactorMatrix F;                    ///< patches × patches
+  std::uint64_t rays = 0;                ///< that were cast
+  std::uint64_t queries = 0;             ///< exact ones, from points
+  std::optional<double> standard_error;  ///< of rays, as they claim it: mean over their form factors; none of one ray
+  double seconds = 0;                    ///< by the clock on the wall
+  double cpu_seconds = 0;                ///< of all threads
 };
 
 /// Area-averaged form factors between the patches of a mesh, its own preparations included in the time. `exchange`

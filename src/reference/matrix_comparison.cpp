@@ -22,9 +22,10 @@ EntryErrors errors_of(std::vector<double> apart) {
   return errors;
 }
 
-void fill(const FormFactorMatrix& F, std::size_t row, std::vector<double>& values) {
+/// Entries of a row, or their errors, in all of its columns.
+void fill(std::span<const double> entries, const FormFactorMatrix& F, std::size_t row, std::vector<double>& values) {
   values.assign(F.columns, 0);
-  for (std::size_t k = 0; k < F.row(row).size(); ++k) values[F.row_columns(row)[k]] = F.row(row)[k];
+  for (std::size_t k = 0; k < entries.size(); ++k) values[F.row_columns(row)[k]] = entries[k];
 }
 
 }  // namespace
@@ -47,15 +48,16 @@ MatrixComparison compare(const MatrixTruth& truth, const FormFactorMatrix& F, st
   if (F.rows() != n || F.columns != n) throw std::invalid_argument("compare: matrices of different sizes");
   MatrixComparison result;
   std::array<std::vector<double>, 4> apart;
-  std::vector<double> facing, of_truth, of_F;
+  std::vector<double> facing, of_truth, error_of_truth, of_F;
   const auto less_wrong = [](const WorstPair& a, const WorstPair& b) {
     return std::fabs(a.F - a.truth) > std::fabs(b.F - b.truth);  // the front of the heap is the least wrong
   };
   for (std::uint32_t i = 0; i < n; ++i) {
-    fill(truth.F, i, of_truth);
-    fill(F, i, of_F);
+    fill(truth.F.row(i), truth.F, i, of_truth);
+    fill(truth.F.row_error(i), truth.F, i, error_of_truth);
+    fill(F.row(i), F, i, of_F);
     for (std::uint32_t j = 0; j < n; ++j) {
-      const WorstPair pair{i, j, of_F[j], of_truth[j]};
+      const WorstPair pair{i, j, of_F[j], of_truth[j], error_of_truth[j]};
       const double error = std::fabs(pair.F - pair.truth);
       const PairClass kind = truth.kind[i * n + j];
       apart[static_cast<std::size_t>(kind)].push_back(error);

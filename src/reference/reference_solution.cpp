@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <fstream>
 #include <numeric>
 #include <stdexcept>
 #include <system_error>
@@ -92,6 +93,12 @@ RadiositySystem system_of(const Scene& scene, const PatchMesh& mesh) {
   return system;
 }
 
+/// In a checkpoint: its run has reached its error. Written before the solution is saved, so that whoever finds that
+/// solution knows whose the rest of a checkpoint is whose removal was cut short.
+std::filesystem::path mark_of_end(const std::filesystem::path& checkpoint) {
+  return checkpoint / "finished";
+}
+
 class ReferenceSolver {
  public:
   ReferenceSolver(const Scene& scene, const PolygonSoup& soup, const ReferenceOptions& options)
@@ -116,12 +123,18 @@ class ReferenceSolver {
   }
 
   ReferenceSolution solve(const std::function<void(const ReferenceSolution&)>& saved) && {
+    const std::filesystem::path& checkpoint = options_.checkpoint;
+    std::error_code ignored;
+    if (!checkpoint.empty()) std::filesystem::remove(mark_of_end(checkpoint), ignored);
     for (;;) {
       if (!add_form_factors()) return std::move(result_);
       solve_level();
+      const bool reached = result_.record.error.total <= options_.error;
+      if (reached && !checkpoint.empty()) std::ofstream(mark_of_end(checkpoint)).flush();
       if (saved) saved(result_);
-      if (result_.record.error.total <= options_.error) {
-        remove_checkpoints();
+      if (reached) {
+        checkpoints_.clear();  // and their locks
+        if (!checkpoint.empty()) clear_finished_checkpoint(checkpoint);
         return std::move(result_);
       }
       refine();
@@ -170,12 +183,6 @@ class ReferenceSolver {
         "patches need less",
         refined_.mesh().elements.size(), static_cast<double>(result_.bytes_needed) * 0x1p-30,
         static_cast<double>(options_.memory_limit) * 0x1p-30));
-  }
-
-  void remove_checkpoints() {
-    for (Checkpoint& checkpoint : checkpoints_) checkpoint.remove();
-    std::error_code ignored;
-    if (!checkpoints_.empty()) std::filesystem::remove(options_.checkpoint, ignored);
   }
 
   void report(double fraction) const {
@@ -412,6 +419,20 @@ PairOptions pair_options_for(double error) {
   // Most entries miss their tolerance by far: those of a row add up to about the absolute one, or to the relative one.
   const double decade = std::pow(10, std::floor(std::log10(error) + 1e-9));
   return {.tolerance = std::max(1e-2 * decade, 1e-13), .relative = 0.05 * decade};
+}
+
+void clear_finished_checkpoint(const std::filesystem::path& checkpoint) {
+  const std::filesystem::path mark = mark_of_end(checkpoint);
+  std::error_code ignored;
+  if (std::filesystem::exists(mark, ignored)) {
+    std::vector<std::filesystem::path> levels;
+    for (const auto& entry : std::filesystem::directory_iterator(checkpoint)) {
+      if (entry.is_directory()) levels.push_back(entry.path());
+    }
+    for (const std::filesystem::path& level : levels) Checkpoint(level, "").remove();
+    std::filesystem::remove(mark, ignored);
+  }
+  std::filesystem::remove(checkpoint, ignored);  // unless it holds anything else
 }
 
 ReferenceSolution solve_reference(const Scene& scene, const PolygonSoup& soup, const ReferenceOptions& options,

@@ -59,6 +59,9 @@ struct ReferenceSolution {
 /// work begun for one of them is of use for another.
 PairOptions pair_options_for(double error);
 
+/// Removes a checkpoint whose run has reached its error and was ended while it removed it itself; of others nothing.
+void clear_finished_checkpoint(const std::filesystem::path& checkpoint);
+
 /// Elements receive and shoot: form factors are those of all pairs of elements, averaged over both by integration
 /// (pair_form_factor.h), and gathering solves for the means of B. B itself is a cubic polynomial on every patch of 16
 /// elements, with which elements shoot better than constants do (PatchPolynomials::shooting_values): of a smooth B the

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -36,7 +37,25 @@ struct Named {
 struct Found {
   std::uint64_t number = 0;
   std::size_t contender = 0, what = 0;  ///< what: the property, or their number for the answer
+  bool threw = false;                   ///< instead of answering
 };
+
+/// What an exception says; nothing where none is thrown.
+template <class Work>
+std::optional<std::string> exception_of(const Work& work) {
+  try {
+    work();
+    return std::nullopt;
+  } catch (const std::exception& thrown) {
+    return thrown.what();
+  }
+}
+
+std::string list_of_families() {
+  std::string names;
+  for (const QuestionFamily& family : question_families()) names += (names.empty() ? "" : ", ") + family.name;
+  return names;
+}
 
 class StressRun {
  public:
@@ -47,7 +66,7 @@ class StressRun {
     }
     for (const std::string& name : options.families) {
       if (std::ranges::find(families_, name, [](const QuestionFamily* f) { return f->name; }) == families_.end())
-        throw std::invalid_argument(name + ": there is no such family of questions");
+        throw std::invalid_argument(name + ": there is no such family of questions; there are " + list_of_families());
     }
     StressTally empty;
     empty.properties.resize(names_.size());
@@ -60,7 +79,7 @@ class StressRun {
     StressReport report;
     std::uint64_t done = 0;
     while (done < options_.count) {
-      if (options_.stop && options_.stop()) {
+      if (stopped()) {
         report.complete = false;
         break;
       }
@@ -74,6 +93,7 @@ class StressRun {
     }
     report.questions = done;
     report.failures = failures();
+    report.complete = report.complete && !stopped();
     for (std::size_t c = 0; c < options_.contenders.size(); ++c) {
       for (std::size_t f = 0; f < families_.size(); ++f) {
         for (std::size_t d = 0; d < departures().size(); ++d) {
@@ -87,6 +107,7 @@ class StressRun {
   }
 
  private:
+  bool stopped() const { return options_.stop && options_.stop(); }
   std::size_t rows_per_contender() const { return families_.size() * departures().size(); }
   std::size_t row(std::size_t contender, std::size_t family, std::size_t departure) const {
     return contender * rows_per_contender() + family * departures().size() + departure;
@@ -123,31 +144,39 @@ class StressRun {
       const PointContender& contender = options_.contenders[c];
       StressTally tally;
       tally.properties.resize(names_.size());
-      std::vector<std::size_t> wrong;
+      std::vector<Found> wrong;
+      Opinion opinion;
       const auto start = Clock::now();
-      const Opinion opinion = contender.ask(question, seed_of(what.name));
+      const bool answers = !exception_of([&] { opinion = contender.ask(question, seed_of(what.name)); });
       tally.seconds = seconds_since(start);
       tally.questions = 1;
       tally.stages = opinion.stages;
       tally.extended = opinion.extended;
       tally.worst_margin = opinion.margin;
-      if (truth) {
-        (truth->visible_area == 0 ? tally.none : truth->is_all_seen ? tally.all : tally.some) = 1;
+      if (truth) (truth->visible_area == 0 ? tally.none : truth->is_all_seen ? tally.all : tally.some) = 1;
+      if (!answers) {
+        tally.wrong = 1;
+        wrong.push_back({number, c, names_.size(), true});
+      } else if (truth) {
         const Verdict verdict = judge(opinion, *truth);
         tally.wrong = verdict.is_wrong ? 1 : 0;
         tally.worst_error = verdict.error;
         tally.worst_relative_error = verdict.relative_error;
-        if (verdict.is_wrong) wrong.push_back(names_.size());
+        if (verdict.is_wrong) wrong.push_back({number, c, names_.size()});
       }
-      for (std::size_t p = 0; options_.properties && contender.has_properties && p < names_.size(); ++p) {
-        const auto trial = try_one(p, what.name, contender, question, opinion);
-        if (!trial) continue;
-        tally.properties[p] = {1, trial->holds() ? 0u : 1u, trial->defect};
-        if (!trial->holds()) wrong.push_back(p);
+      for (std::size_t p = 0; answers && options_.properties && contender.has_properties && p < names_.size(); ++p) {
+        std::optional<PropertyTrial> trial;
+        if (exception_of([&] { trial = try_one(p, what.name, contender, question, opinion); })) {
+          tally.properties[p] = {1, 1, 0};
+          wrong.push_back({number, c, p, true});
+        } else if (trial) {
+          tally.properties[p] = {1, trial->holds() ? 0u : 1u, trial->defect};
+          if (!trial->holds()) wrong.push_back({number, c, p});
+        }
       }
       const std::lock_guard lock(mutex_);
       tallies_[row(c, what.family, what.departure)].add(tally);
-      for (const std::size_t w : wrong) found_.push_back({number, c, w});
+      found_.insert(found_.end(), wrong.begin(), wrong.end());
     }
   }
 
@@ -173,25 +202,36 @@ class StressRun {
     const DrawnQuestion drawn_question = drawn(what);
     const PointContender& contender = options_.contenders[found.contender];
     const bool is_answer = found.what == names_.size();
+    const auto ask = [&](const PointQuestion& question) { return contender.ask(question, seed_of(what.name)); };
+    const auto throws = [&](const PointQuestion& question) {
+      return exception_of([&] {
+        const Opinion opinion = ask(question);
+        if (!is_answer) try_one(found.what, what.name, contender, question, opinion);
+      });
+    };
+    const auto is_wrong = [&](const PointQuestion& question) {
+      const Opinion opinion = ask(question);
+      if (is_answer) return judge(opinion, oracle_form_factor(question)).is_wrong;
+      const auto trial = try_one(found.what, what.name, contender, question, opinion);
+      return trial && !trial->holds();
+    };
     const auto fails = [&](const PointQuestion& question) {
-      try {
-        const Opinion opinion = contender.ask(question, seed_of(what.name));
-        if (is_answer) return judge(opinion, oracle_form_factor(question)).is_wrong;
-        const auto trial = try_one(found.what, what.name, contender, question, opinion);
-        return trial && !trial->holds();
-      } catch (const std::exception&) {
-        return false;  // another failure than this
-      }
+      if (stopped()) return false;  // then it stays as it is
+      if (found.threw) return throws(question).has_value();
+      bool wrong = false;
+      return !exception_of([&] { wrong = is_wrong(question); }) && wrong;
     };
     StressFailure failure{.question = what.name + " " + drawn_question.placement,
                           .contender = contender.name,
                           .what = is_answer ? kAnswer : names_[found.what],
+                          .exception = {},
                           .asked = {shrink(drawn_question.question, fails)},
-                          .F = 0,
+                          .F = std::numeric_limits<double>::quiet_NaN(),
                           .truth = {}};
     const PointQuestion question = failure.asked[0];
-    failure.F = contender.ask(question, seed_of(what.name)).F;
-    if (options_.oracle) failure.truth = static_cast<double>(oracle_form_factor(question).F);
+    if (found.threw) failure.exception = throws(question).value_or("");
+    exception_of([&] { failure.F = ask(question).F; });
+    if (options_.oracle && !stopped()) failure.truth = static_cast<double>(oracle_form_factor(question).F);
     if (!is_answer && names_[found.what] != kClosure) {
       Random random(what.name + "/" + names_[found.what]);
       const auto forms = properties()[found.what].forms(question, random);

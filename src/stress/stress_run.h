@@ -24,7 +24,7 @@ struct StressOptions {
   bool properties = true;  ///< of contenders that have them, and closure of the exact one
   std::size_t failures_kept = 1000;
   Progress progress;
-  std::function<bool()> stop;  ///< asked between questions; true ends the run
+  std::function<bool()> stop;  ///< asked between questions and tries to make failures small; true ends the run
 };
 
 /// How a property fared.
@@ -38,7 +38,7 @@ struct StressTally {
   std::uint64_t questions = 0;
   std::uint64_t none = 0, some = 0, all = 0;  ///< how much is seen, as the oracle says
   /// Answers that are further from the truth than their margin, or say of what is hidden that it is seen, or that
-  /// something is open, hidden or away that is not.
+  /// something is open, hidden or away that is not; and exceptions instead of answers.
   std::uint64_t wrong = 0;
   double worst_error = 0;           ///< of F, absolute
   double worst_relative_error = 0;  ///< where F ≥ 1e-15
@@ -66,8 +66,9 @@ struct StressFailure {
   std::string question;  ///< seed/family/departure/number, and its placement
   std::string contender;
   std::string what;                  ///< "answer", or the property
+  std::string exception;             ///< what it says, where one was thrown instead of an answer
   std::vector<PointQuestion> asked;  ///< the question, and the forms of it that the property compares it with
-  double F = 0;                      ///< what the contender says of the first
+  double F = 0;                      ///< what the contender says of the first; NaN if it throws
   std::optional<double> truth;       ///< what the oracle says of it
 };
 
@@ -82,8 +83,9 @@ struct StressReport {
 };
 
 /// The same options give the same report, times apart, for any number of threads. Of contenders that prove nothing only
-/// the first failure of each family is kept, for they have many. Throws std::invalid_argument on a family that there is
-/// not.
+/// the first failure of each family is kept, for they have many. An exception of a contender is a failure of its own;
+/// of the oracle it ends the run. Throws std::invalid_argument on a family that there is not, naming those that there
+/// are.
 StressReport run_stress(const StressOptions& options);
 
 }  // namespace exitance

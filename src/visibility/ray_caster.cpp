@@ -48,6 +48,41 @@ void intersect(const int* valid, RTCScene scene, RTCIntersectContext* context, R
   rtcIntersect16(valid, scene, context, rays);
 }
 
+/// Lets rays pass what they meet from behind, of triangles that have a twin which they meet from before. The geometry's
+/// data: whether each triangle has.
+void pass_backs_of_twins(const RTCFilterFunctionNArguments* args) {
+  const auto& has_twin = *static_cast<const std::vector<std::uint8_t>*>(args->geometryUserPtr);
+  for (unsigned k = 0; k < args->N; ++k) {
+    if (args->valid[k] != -1 || has_twin[RTCHitN_primID(args->hit, args->N, k)] == 0) continue;
+    const float along = RTCHitN_Ng_x(args->hit, args->N, k) * RTCRayN_dir_x(args->ray, args->N, k) +
+                        RTCHitN_Ng_y(args->hit, args->N, k) * RTCRayN_dir_y(args->ray, args->N, k) +
+                        RTCHitN_Ng_z(args->hit, args->N, k) * RTCRayN_dir_z(args->ray, args->N, k);
+    if (along > 0) args->valid[k] = 0;
+  }
+}
+
+/// Whether the other facet is the same turned over.
+bool are_twins(const PolygonSoup& soup, std::uint32_t facet, std::uint32_t other) {
+  const auto a = soup.corners(soup.facets()[facet]), b = soup.corners(soup.facets()[other]);
+  const std::size_t n = a.size();
+  if (b.size() != n) return false;
+  for (std::size_t first = 0; first < n; ++first) {
+    std::size_t same = 0;
+    while (same < n && a[same].at == b[(first + n - same) % n].at) ++same;
+    if (same == n) return true;
+  }
+  return false;
+}
+
+/// Of each facet, whether it is one side of a sheet.
+std::vector<std::uint8_t> sides_of_sheets(const PolygonSoup& soup) {
+  std::vector<std::uint8_t> are(soup.facets().size());
+  for (std::uint32_t f = 0; f < are.size(); ++f) {
+    are[f] = std::ranges::any_of(soup.coplanar(f), [&](std::uint32_t other) { return are_twins(soup, f, other); });
+  }
+  return are;
+}
+
 }  // namespace
 
 struct RayCaster::EmbreeScene {
@@ -70,7 +105,7 @@ struct RayCaster::EmbreeScene {
     if (error != RTC_ERROR_NONE || !device) throw std::runtime_error("Embree: error " + std::to_string(error));
   }
 
-  void add(std::span<const Vec3> loop, std::uint32_t patch) {
+  void add(std::span<const Vec3> loop, std::uint32_t patch, bool twin = false) {
     const auto first = static_cast<std::uint32_t>(corners.size() / 3);
     for (const Vec3& v : loop) {
       for (int axis = 0; axis < 3; ++axis) corners.push_back(static_cast<float>(v[axis] - centre[axis]));
@@ -78,13 +113,14 @@ struct RayCaster::EmbreeScene {
     for (std::uint32_t k = 1; k + 1 < loop.size(); ++k) {
       triangles.push_back({first, first + k, first + k + 1});
       patch_of.push_back(patch);
+      has_twin.push_back(twin);
     }
   }
 
-  void add_facet(const PolygonSoup& soup, const Facet& facet, std::uint32_t patch = kNone) {
+  void add_facet(const PolygonSoup& soup, const Facet& facet, std::uint32_t patch = kNone, bool twin = false) {
     std::vector<Vec3> loop;
     for (const Corner& c : soup.corners(facet)) loop.push_back(c.at);
-    add(loop, patch);
+    add(loop, patch, twin);
   }
 
   void commit() {
@@ -97,6 +133,10 @@ struct RayCaster::EmbreeScene {
       check();
       std::ranges::copy(corners, vertex);
       for (const auto& t : triangles) index = std::ranges::copy(t, index).out;
+      if (std::ranges::find(has_twin, 1) != has_twin.end()) {
+        rtcSetGeometryUserData(geometry.get(), &has_twin);
+        rtcSetGeometryIntersectFilterFunction(geometry.get(), pass_backs_of_twins);
+      }
       rtcCommitGeometry(geometry.get());
       rtcAttachGeometry(scene.get(), geometry.get());
     }
@@ -183,6 +223,7 @@ struct RayCaster::EmbreeScene {
   double offset = 0;  ///< [m]
   std::uint32_t packet = 16;
   std::vector<std::uint32_t> patch_of;                  ///< of each triangle
+  std::vector<std::uint8_t> has_twin;                   ///< likewise: whether it is part of one side of a sheet
   std::vector<float> corners;                           ///< until they are committed, like
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< these
 };
@@ -197,12 +238,14 @@ RayCaster::RayCaster(const PolygonSoup& soup, const RayOptions& options)
 
 RayCaster::RayCaster(const PatchMesh& mesh, const PolygonSoup& soup, const RayOptions& options)
     : embree_(std::make_unique<EmbreeScene>(soup, options)) {
+  const std::vector<std::uint8_t> of_sheet = sides_of_sheets(soup);
   for (std::uint32_t p = 0; p < mesh.patches.size(); ++p) {
     for (const PatchPiece& piece : mesh.pieces_of(mesh.patches[p])) {
+      const bool twin = of_sheet[piece.facet] != 0;
       if (piece.loop_count == 0) {
-        embree_->add_facet(soup, soup.facets()[piece.facet], p);
+        embree_->add_facet(soup, soup.facets()[piece.facet], p, twin);
       } else {
-        embree_->add(mesh.loop(piece), p);
+        embree_->add(mesh.loop(piece), p, twin);
       }
     }
   }

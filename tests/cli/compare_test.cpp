@@ -58,6 +58,11 @@ TEST_F(CompareTest, MoreRaysAreLessWrongAndExactFormFactorsAreRight) {
   EXPECT_LT(exact.at("solution").at("error"), 1e-5);
   EXPECT_GT(many.at("rays"), 60 * static_cast<double>(few.at("rays")));
   EXPECT_GT(exact.at("queries"), 0);
+  EXPECT_LT(many.at("mean_standard_error"), few.at("mean_standard_error"));
+  EXPECT_GT(many.at("mean_standard_error"), 0);
+  EXPECT_GT(hemisphere.at("mean_standard_error"), 0);
+  EXPECT_TRUE(centre.at("mean_standard_error").is_null()) << "one ray has no spread";
+  EXPECT_TRUE(exact.at("mean_standard_error").is_null());
   EXPECT_EQ(few.at("worst").size(), 10u);
   EXPECT_EQ(few.at("worst")[0].at("reason"), "too few rays");
   EXPECT_LE(result.at("truth").at("largest_error"), 1e-10);
@@ -85,10 +90,48 @@ TEST_F(CompareTest, WhatOtherProgramsMadeIsReadAndItsFaultNamed) {
       compare(right + "," + wrong + "," + matrix("right.txt"), "-o " + (scratch / "worst.vtp").string());
   EXPECT_LT(error(result.at("contenders")[0], "facing", "max"), 2e-9);
   EXPECT_LT(error(result.at("contenders")[2], "facing", "max"), 2e-9);
+  for (const auto& pair : result.at("contenders")[0].at("worst")) {
+    const bool is_known =
+        std::fabs(pair.at("F").get<double>() - pair.at("truth").get<double>()) > pair.at("truth_error");
+    EXPECT_EQ(pair.at("reason") == "none: within the error of the truth", !is_known);
+  }
   const auto& worst = result.at("contenders")[1].at("worst")[0];
   EXPECT_EQ(worst.at("F"), 0);
   EXPECT_GT(worst.at("truth"), 1e-3);
   EXPECT_EQ(vtp_array(scratch / "worst.vtp", "rank").front(), 1);
+  EXPECT_EQ(vtp_array(scratch / "worst.vtp", "reason").size(), vtp_array(scratch / "worst.vtp", "rank").size());
+}
+
+/// A box on a whole floor and one on it. Rays that are not told of contacts run within them, from the bottom of the one
+/// through the other.
+TEST_F(CompareTest, NamesContactsAndOffsets) {
+  const std::string file = (scratch / "stack.toml").string();
+  std::ofstream(file) << R"([[material]]
+name = "grey"
+rho = 0.5
+E = 1
+[[object]]
+material = "grey"
+box = {min = [0, 0, 0], max = [3, 3, 3]}
+flip = true
+[[object]]
+material = "grey"
+box = {min = [1, 1, 0], max = [2, 2, 1]}
+[[object]]
+material = "grey"
+box = {min = [1.25, 1.25, 1], max = [1.75, 1.75, 1.5]}
+)";
+  const auto worst = [&](const std::string& against, const std::string& options = "") {
+    const Outcome outcome = run("compare " + file + " --tolerance 1e-6 --json --against " + against + " " + options);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out).at("contenders")[0].at("worst")[0];
+  };
+  const auto untold = worst("rays:256:untold");
+  EXPECT_EQ(untold.at("truth"), 0);
+  EXPECT_GT(untold.at("F"), 0.1);
+  EXPECT_EQ(untold.at("reason"), "contact: something lies on one of them");
+  EXPECT_EQ(worst("rays:256").at("reason"), "too few rays");
+  EXPECT_EQ(worst("rays:256", "--ray-offset 0").at("reason"), "self-intersection: nothing stands between");
 }
 
 TEST_F(CompareTest, FormFactorsThatMakeNoSystemAreNoFailure) {
@@ -131,7 +174,7 @@ TEST_F(CompareTest, BadInputIsOneLine) {
   std::ofstream(text) << "View3D 3.3 0 1 0 2\n1 1\n0 0.5\n0.5 0\n0.5 0.5\n";
   for (const auto& [against, code, says] : {std::tuple{std::string("rays"), 2, "rays"},
                                             {"rays:0", 2, "rays:0"},
-                                            {"rays:12:fast", 2, "fast"},
+                                            {"rays:12:quick", 2, "quick"},
                                             {"exact:-1", 2, "exact:-1"},
                                             {"nonsense", 2, "nonsense"},
                                             {"/nowhere/F.csv", 3, "/nowhere/F.csv"},

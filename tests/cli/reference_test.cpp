@@ -51,14 +51,26 @@ TEST_F(ReferenceTest, GoesOnAfterBeingKilledWithTheSameBits) {
   ASSERT_EQ(run(command + path("whole.h5")).code, 0);
   run(command + path("killed.h5"), "timeout -s KILL 0.5");
   run(command + path("killed.h5"), "timeout -s KILL 1");
-  const bool was_finished = exists("killed.h5");  // then the kill may have come while its parts were being removed
   ASSERT_EQ(run("reference " + data("box_on_floor.toml") + " --error 1.5e-2 --threads 1 -o " + path("killed.h5")).code,
             0);
-  EXPECT_TRUE(was_finished || !exists("killed.h5.parts"));
+  EXPECT_FALSE(exists("killed.h5.parts")) << "even if it was killed while it removed them";
   const SolutionRecord whole = read_solution(scratch_ / "whole.h5"), killed = read_solution(scratch_ / "killed.h5");
   EXPECT_EQ(whole.B, killed.B);
   EXPECT_EQ(whole.error.total, killed.error.total);
   EXPECT_EQ(whole.mesh.points, killed.mesh.points);
+}
+
+TEST_F(ReferenceTest, WhatAFinishedRunLeftIsRemovedWhatAnotherNeedsIsNot) {
+  const std::string scene = "reference " + data("furnace_cube.toml");
+  ASSERT_EQ(run(scene + " --error 1e-6 -o " + path("ref.h5")).code, 0);
+  ASSERT_EQ(run(scene + " --error 1e-13 --time-limit 0.001 --save-every 0 -o " + path("stricter.h5")).code, 4);
+  // The rows of a stricter run, first as if it went on, then as if it were the finished one's.
+  std::filesystem::rename(scratch_ / "stricter.h5.parts", scratch_ / "ref.h5.parts");
+  EXPECT_EQ(run(scene + " --error 1e-6 -o " + path("ref.h5")).code, 0);
+  EXPECT_TRUE(exists("ref.h5.parts/level-00"));
+  std::ofstream(scratch_ / "ref.h5.parts/finished").flush();
+  EXPECT_EQ(run(scene + " --error 1e-6 -o " + path("ref.h5")).code, 0);
+  EXPECT_FALSE(exists("ref.h5.parts"));
 }
 
 TEST_F(ReferenceTest, LimitsKeepWhatThereIs) {

@@ -49,7 +49,8 @@ TEST(Stress, WritesFailuresThatCasesReplays) {
 
 TEST(Stress, RefusesWhatItDoesNotKnow) {
   for (const char* arguments :
-       {"stress --family gaps", "stress --contender exactly", "stress --contender rays:0", "stress --count 0"}) {
+       {"stress --family gaps", "stress --contender exactly", "stress --contender rays:0", "stress --count 0",
+        "stress --contender exact,rays:16,exact", "stress --contender exact,rays:16 --against properties"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;
     EXPECT_TRUE(outcome.one_line_on_stderr()) << outcome.err;

@@ -1,7 +1,12 @@
 #include "src/stress/stress_run.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+
+#include <atomic>
+#include <cmath>
+#include <memory>
 
 #include "src/stress/verdict.h"
 
@@ -109,10 +114,81 @@ TEST(StressRun, GoesOnWhereAnotherEnded) {
   EXPECT_EQ(whole.tried(), parts.tried());
 }
 
+/// Throws where more than one thing stands between, or, if `late`, only when it is asked again.
+PointContender throwing(bool late) {
+  const auto exact = point_contender_named("exact");
+  const auto asked = std::make_shared<std::atomic<int>>(0);
+  return {"throwing",
+          [exact, asked, late](const PointQuestion& q, std::uint64_t seed) {
+            if (late ? (*asked)++ > 0 : q.occluders.size() > 1) throw std::runtime_error("too much stands between");
+            return exact.ask(q, seed);
+          },
+          true, true};
+}
+
+TEST(StressRun, AnExceptionIsAFailureOfItsContender) {
+  StressOptions options = asking({"exact"}, 29);
+  options.contenders.push_back(throwing(false));
+  options.properties = false;
+  const StressReport report = run_stress(options);
+  EXPECT_EQ(report.questions, 29u);
+  EXPECT_EQ(report.total("exact").wrong, 0u);
+  const StressTally total = report.total("throwing");
+  EXPECT_GT(total.wrong, 0u);
+  EXPECT_LT(total.wrong, 29u) << "the others are answered";
+  ASSERT_EQ(report.failures.size(), total.wrong);
+  for (const StressFailure& failure : report.failures) {
+    EXPECT_EQ(failure.exception, "too much stands between");
+    EXPECT_TRUE(std::isnan(failure.F));
+    EXPECT_TRUE(failure.truth.has_value());
+    EXPECT_EQ(failure.asked.at(0).occluders.size(), 2u) << "made small";
+  }
+}
+
+TEST(StressRun, AnExceptionBreaksAProperty) {
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  StressOptions options = asking({}, 1);
+  options.contenders = {throwing(true)};
+  options.families = {"duplicate"};
+  options.failures_kept = 0;
+  const StressTally total = run_stress(options).total("throwing");
+  EXPECT_EQ(total.wrong, 0u);
+  EXPECT_GT(total.broken(), 5u) << "of all properties but closure";
+}
+
+TEST(StressRun, StopsMakingFailuresSmall) {
+  StressOptions options = asking({}, 60);
+  options.families = {"gap"};
+  options.contenders = {careless()};
+  options.failures_kept = 3;
+  const StressReport whole = run_stress(options);
+  ASSERT_FALSE(whole.failures.empty());
+  std::atomic<bool> stopped = false;
+  options.progress = [&](double done, std::string_view) { stopped = done == 1; };
+  options.stop = [&] { return stopped.load(); };
+  const StressReport report = run_stress(options);
+  EXPECT_FALSE(report.complete);
+  EXPECT_EQ(report.questions, 60u);
+  ASSERT_EQ(report.failures.size(), whole.failures.size());
+  std::size_t larger = 0;
+  for (std::size_t k = 0; k < whole.failures.size(); ++k) {
+    EXPECT_EQ(report.failures[k].question, whole.failures[k].question);
+    larger += report.failures[k].asked[0].occluders.size() > whole.failures[k].asked[0].occluders.size();
+  }
+  EXPECT_GT(larger, 0u);
+}
+
 TEST(StressRun, RefusesAFamilyThatThereIsNot) {
   StressOptions options = asking({"exact"}, 1);
   options.families = {"gap", "gaps"};
-  EXPECT_THROW(run_stress(options), std::invalid_argument);
+  try {
+    run_stress(options);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& refused) {
+    EXPECT_THAT(refused.what(), testing::StartsWith("gaps: there is no such family"));
+    for (const QuestionFamily& family : question_families())
+      EXPECT_THAT(refused.what(), testing::HasSubstr(family.name));
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/contour_form_factor.h"
 #include "src/form_factor/area_rows.h"
 #include "src/form_factor/point_rows.h"
 #include "src/form_factor/sampled_area_rows.h"
@@ -83,6 +84,18 @@ double rms(const std::vector<std::vector<double>>& a, const std::vector<std::vec
   return std::sqrt(sum / count);
 }
 
+/// What is left of an error by 16 times the rays. Of independent ones it is a quarter, of evenly spread ones less. An
+/// rms over twenty pairs or more that rays find in part is known to 1 / √40, a ratio of two to 0.22 of itself: an error
+/// that is of chance alone falls to less than 0.42, three deviations above, and one that is not stays as it is.
+constexpr double kApproach = 0.25 * (1 + 3 * 0.22);
+
+double left_of_error(const Rows& rows, const PointRows& exact, RayOptions options) {
+  const auto truth = rows.dense(exact.F);
+  const double before = rms(rows.dense(rows.by_rays(options).F), truth);
+  options.rays *= 16;
+  return rms(rows.dense(rows.by_rays(options).F), truth) / before;
+}
+
 /// A shelf's board on the floor of a room and a book on the board: 0 … 5 the room, 6 … 11 the board, 12 … 17 the book.
 Scene book_on_board(const Placement& place) {
   Scene scene = empty_scene();
@@ -109,9 +122,8 @@ TEST_P(TurnedOrNot, BothSidesOfASheetSee) {
     const PointRows exact = rows.exact();
     EXPECT_EQ(exact.statistics.covered_points, 0u) << patch_size;
     EXPECT_LT(exact.statistics.closure_max_defect, 1e-12) << patch_size;
-    const PointRows sampled = rows.by_rays({.rays = 1024});
-    EXPECT_EQ(sampled.statistics.covered_points, 0u) << patch_size;
-    EXPECT_LT(rms(rows.dense(sampled.F), rows.dense(exact.F)), 1e-3) << patch_size;
+    EXPECT_EQ(rows.by_rays({.rays = 16}).statistics.covered_points, 0u) << patch_size;
+    EXPECT_LT(left_of_error(rows, exact, {.rays = 64, .estimator = Estimator::hemisphere}), kApproach) << patch_size;
   }
 }
 
@@ -124,41 +136,67 @@ TEST_P(TurnedOrNot, PointsBetweenSolidsSeeNothing) {
     EXPECT_EQ(contacts.covered(elements[e].facet, elements[e].sample), exact.F.row(e).empty()) << e;
   EXPECT_GE(exact.statistics.covered_points, 3u) << "floor, bottoms of board and book; in the middle, the board's top";
   for (const Estimator estimator : {Estimator::kernel, Estimator::hemisphere}) {
-    const RayOptions options{.rays = 1 << 14, .estimator = estimator};
-    const PointRows sampled = rows.by_rays(options);
-    EXPECT_EQ(sampled.statistics.covered_points, exact.statistics.covered_points);
-    EXPECT_LT(rms(rows.dense(sampled.F), rows.dense(exact.F)), 2e-3) << to_string(estimator);
-    RayOptions untold = options;
-    untold.contacts = false;
-    EXPECT_GT(rms(rows.dense(rows.by_rays(untold).F), rows.dense(exact.F)), 2e-2) << "the book sees through the board";
+    RayOptions options{.rays = 256, .estimator = estimator};
+    EXPECT_EQ(rows.by_rays(options).statistics.covered_points, exact.statistics.covered_points);
+    EXPECT_LT(left_of_error(rows, exact, options), kApproach) << to_string(estimator);
+    options.contacts = false;
+    EXPECT_GT(left_of_error(rows, exact, options), kApproach) << to_string(estimator);
   }
 }
 
+/// The book's bottom, 12, lies on the board, whose bottom, 6, lies on the floor, 0: both see nothing. Rays that are not
+/// told start and end within the board, and what the one sees of the floor under it is the closed form of two squares.
 TEST_P(TurnedOrNot, AreasBetweenSolidsAreLeftOut) {
   const Rows rows(book_on_board(place));
+  Scene squares = empty_scene();
+  add(squares, {{-0.25, -0.25, 0.25}, {-0.25, 0.5, 0.25}, {0.5, 0.5, 0.25}, {0.5, -0.25, 0.25}}, place);
+  add(squares, {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, place);
+  const PolygonSoup soup = make_soup(squares);
+  const ExchangeScene two(soup);
+  const double through =
+      unobstructed_exchange(two.pieces(0)[0].radiator, two.pieces(1)[0].radiator).integral / two.area(0);
+  for (const Estimator estimator : {Estimator::kernel, Estimator::hemisphere}) {
+    RayOptions options{.rays = 1 << 12, .estimator = estimator};
+    const auto sampled = [&] {
+      return rows.dense(sampled_area_rows(rows.mesh, rows.soup, ExchangeScene::Unit::element, options).F);
+    };
+    auto F = sampled();
+    for (std::size_t other = 0; other < F.size(); ++other) {
+      for (const std::size_t hidden : {6u, 12u}) EXPECT_EQ(F[hidden][other] + F[other][hidden], 0) << hidden << other;
+    }
+    options.contacts = false;
+    F = sampled();
+    EXPECT_GT(F[12][0], through / 2) << to_string(estimator);
+  }
+}
+
+TEST(Contacts, AreasThatAreCoveredInPartApproachExactOnes) {
+  const Rows rows(book_on_board({}));
   PairOptions pairs;
   pairs.tolerance = 1e-3;
   const auto truth = rows.dense(area_rows(rows.mesh, rows.soup, pairs, 1).F);
-  for (const Estimator estimator : {Estimator::kernel, Estimator::hemisphere}) {
-    RayOptions options{.rays = 1 << 12, .estimator = estimator};
-    const auto error = [&] {
-      return rms(rows.dense(sampled_area_rows(rows.mesh, rows.soup, ExchangeScene::Unit::element, options).F), truth);
-    };
-    EXPECT_LT(error(), 4e-3) << to_string(estimator);
-    options.contacts = false;
-    EXPECT_GT(error(), 8e-3) << to_string(estimator);
-  }
+  const auto error = [&](std::uint32_t n) {
+    const RayOptions options{.rays = n, .estimator = Estimator::hemisphere};
+    return rms(rows.dense(sampled_area_rows(rows.mesh, rows.soup, ExchangeScene::Unit::element, options).F), truth);
+  };
+  EXPECT_LT(error(1024), kApproach * error(64));
 }
 
 TEST(Contacts, WhatLiesOnTopIsSeen) {
   Scene scene = empty_scene();
   add_box(scene, {-2, -2, 0}, {2, 2, 3}, false, {});
   add(scene, {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {});  // a rug at the floor's level
-  const Rows rows(scene);
-  const auto exact = rows.dense(rows.exact().F);
-  EXPECT_LT(rms(rows.dense(rows.by_rays({.rays = 1 << 14}).F), exact), 1e-3);
-  EXPECT_GT(rms(rows.dense(rows.by_rays({.rays = 1 << 14, .contacts = false}).F), exact), 1e-2);
-  EXPECT_GT(exact[1][6], 0) << "the ceiling sees the rug";
+  const Rows rows(scene, {.patch_size = 1.5});                       // the rug's edges run within patches of the floor
+  const PointRows exact = rows.exact();
+  const std::size_t rug = rows.mesh.patches.size() - 1;
+  ASSERT_EQ(rows.mesh.patches[rug].surface, 6u);
+  double seen = 0;
+  for (const std::vector<double>& row : rows.dense(exact.F)) seen += row[rug];
+  EXPECT_GT(seen, 0);
+  RayOptions options{.rays = 64};
+  EXPECT_LT(left_of_error(rows, exact, options), kApproach);
+  options.contacts = false;
+  EXPECT_GT(left_of_error(rows, exact, options), kApproach);
 }
 
 /// In a furnished room a fifth of all sample points lie in contacts.
@@ -166,17 +204,14 @@ TEST(Contacts, RowsOfFurnishedRoomsApproachExactOnes) {
   const Rows rows(make_furnished_room(200, 1));
   const PointRows exact = rows.exact();
   ASSERT_GT(exact.statistics.covered_points, 20u);
-  const auto truth = rows.dense(exact.F);
-  double previous = 0.02;
-  for (const std::uint32_t n : {16u, 256u, 4096u}) {
-    const PointRows sampled = rows.by_rays({.rays = n});
-    EXPECT_EQ(sampled.statistics.covered_points, exact.statistics.covered_points);
-    const double error = rms(rows.dense(sampled.F), truth);
-    EXPECT_LT(error, previous / 2);
-    previous = error;
+  for (const Estimator estimator : {Estimator::kernel, Estimator::hemisphere}) {
+    RayOptions options{.rays = 256, .estimator = estimator};
+    EXPECT_EQ(rows.by_rays(options).statistics.covered_points, exact.statistics.covered_points);
+    EXPECT_LT(left_of_error(rows, exact, options), kApproach) << to_string(estimator);
+    options.rays = 16;
+    options.contacts = false;
+    EXPECT_GT(left_of_error(rows, exact, options), kApproach) << to_string(estimator);
   }
-  EXPECT_LT(rms(rows.dense(rows.by_rays({.rays = 4096, .estimator = Estimator::hemisphere}).F), truth), 3e-4);
-  EXPECT_GT(rms(rows.dense(rows.by_rays({.rays = 256, .contacts = false}).F), truth), 5e-3);
 }
 
 }  // namespace
