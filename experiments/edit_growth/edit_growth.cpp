@@ -6,7 +6,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,11 +24,47 @@ namespace exitance {
 namespace {
 
 constexpr std::uint64_t kSeed = 7;
-constexpr std::uint64_t kShotsBefore = 1;
+/// What has been shot when the object moves: by the strongest lamps.
+constexpr std::uint64_t kShotsBefore = 4;
+constexpr std::uint32_t kEdits = 11;
 
-/// A furnished room, one patch a polygon, and a box below the ceiling.
-Scene room_with_box(std::uint32_t polygons) {
-  Scene scene = make_furnished_room(polygons, kSeed);
+/// How rooms get more patches.
+enum class Family {
+  detail,  ///< one furnished room, cut and furnished ever finer: more of it lies in the object's shadow
+  row      ///< the furnished room of the fewest patches, and copies of it beside it: the same lies in the object's shadow
+};
+
+const char* name_of(Family family) {
+  return family == Family::detail ? "detail" : "row";
+}
+
+constexpr std::uint32_t kRoom = 1000;
+
+/// A furnished room, and behind its walls others without light.
+Scene row_of_rooms(std::uint32_t polygons) {
+  Scene scene = make_furnished_room(kRoom, kSeed);
+  Box box;
+  for (const Surface& s : scene.surfaces) {
+    for (const Vec3& p : s.polygon.outer) box.extend(p);
+  }
+  const std::vector<Surface> room = scene.surfaces;
+  Material dark = scene.materials.front();
+  dark.name = "dark";
+  std::ranges::fill(dark.E, 0.0);
+  scene.materials.push_back(dark);
+  for (std::uint32_t k = 1; k * kRoom < polygons; ++k) {
+    for (Surface s : room) {
+      for (Vec3& p : s.polygon.outer) p.x += 1.25 * (box.upper.x - box.lower.x) * k;
+      s.material = static_cast<std::uint32_t>(scene.materials.size() - 1);
+      scene.surfaces.push_back(std::move(s));
+    }
+  }
+  return scene;
+}
+
+/// One patch a polygon, and a box below the ceiling.
+Scene room_with_box(Family family, std::uint32_t polygons) {
+  Scene scene = family == Family::row ? row_of_rooms(polygons) : make_furnished_room(polygons, kSeed);
   const auto object = static_cast<std::uint32_t>(scene.objects.size());
   scene.objects.push_back({"box", ""});
   const Vec3 low{-0.2, -0.2, 0}, high{0.2, 0.2, 0.3};
@@ -59,61 +97,107 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+/// Medians over the edits; of bytes, the mean.
 struct Growth {
   std::size_t patches = 0;
-  double edit = 0, rank = 0, shot = 0;  ///< [s] of the processor: an edit, the order of shots after it, one of the shots
-  double bytes = 0;                     ///< that an edit adds while the version before is kept
-  double tests = 0;                     ///< form factors that a shot takes
+  double edit = 0, order = 0, shots = 0;  ///< [s] of the processor: an edit, the order of shots after it, all of them
+  double bytes = 0;                       ///< of the heap that an edit takes, while all versions are kept
+  double candidates = 0, tests = 0;       ///< elements that may be in a shadow, form factors that were computed
+  std::uint32_t remade = 0;               ///< edits for which the polygons' topology and index were made anew
 };
 
-Growth measure(std::uint32_t polygons, std::uint32_t edits) {
-  const Scene scene = room_with_box(polygons);
+Growth measure(Family family, std::uint32_t polygons) {
+  const Scene scene = room_with_box(family, polygons);
   const auto object = static_cast<std::uint32_t>(scene.objects.size() - 1);
-  Box box;
-  for (const Surface& s : scene.surfaces) {
-    for (const Vec3& p : s.polygon.outer) box.extend(p);
-  }
+  Box box;  // of the furthest left room, which begins with its floor
+  for (const Vec3& p : scene.surfaces.front().polygon.outer) box.extend(p);
   Vec3 middle = 0.5 * (box.lower + box.upper);
   middle.z = 2.2;
-  EditSession session(scene, {});
+  SessionOptions options;
+  options.threshold = 0;
+  EditSession session(scene, options);
   session.apply(step(object, middle, 0));
-  Budget some;
-  some.shots = kShotsBefore;
-  (void)some;
-  std::vector<double> edit, rank, shot, bytes, tests;
-  for (std::uint32_t k = 1; k <= edits; ++k) {
-    const std::size_t heap = heap_bytes();
+  Budget budget;
+  budget.shots = kShotsBefore;
+  session.work(budget);
+  Growth growth;
+  growth.patches = session.solution().version().present_patches();
+  std::vector<double> edit, order, shots, candidates, tests;
+  std::vector<std::shared_ptr<const SceneVersion>> kept;
+  for (std::uint32_t k = 1; k <= kEdits; ++k) {
+    kept.push_back(session.solution().shared_version());
     RunClock clock;
     session.apply(step(object, middle, k));
     edit.push_back(clock.cpu_seconds());
-    bytes.push_back(static_cast<double>(heap_bytes()) - static_cast<double>(heap));
+    growth.remade += session.solution().version().soup().shares_with(kept.back()->soup()) ? 0 : 1;
     clock = RunClock();
     session.redistribution_left();
-    rank.push_back(clock.cpu_seconds());
+    order.push_back(clock.cpu_seconds());
+    budget.shots = session.log().front().patches;
     clock = RunClock();
-    Budget none; none.shots = 0;
-    const SessionWork work = session.work(k == 0 ? some : none);
-    shot.push_back(clock.cpu_seconds() / static_cast<double>(work.redistributions + work.propagations));
-    tests.push_back(static_cast<double>(work.redistribution.visibility_tests + work.propagation.visibility_tests) /
-                    static_cast<double>(work.redistributions + work.propagations));
+    const SessionWork work = session.work(budget);
+    shots.push_back(clock.cpu_seconds());
+    candidates.push_back(static_cast<double>(work.redistribution.candidates));
+    tests.push_back(static_cast<double>(work.redistribution.visibility_tests));
   }
-  return {session.solution().version().present_patches(), median(edit), median(rank), median(shot), median(bytes),
-          median(tests)};
+  // Several edits in a row, of which all versions are kept.
+  const std::size_t heap = heap_bytes();
+  for (std::uint32_t k = 0; k < kEdits; ++k) {
+    session.apply(step(object, middle, k));
+    kept.push_back(session.solution().shared_version());
+  }
+  growth.bytes = (static_cast<double>(heap_bytes()) - static_cast<double>(heap)) / kEdits;
+  growth.edit = median(edit);
+  growth.order = median(order);
+  growth.shots = median(shots);
+  growth.candidates = median(candidates);
+  growth.tests = median(tests);
+  return growth;
 }
 
 int run(int argc, char** argv) {
   CLI::App app{"Time and memory of the same edit in rooms of ever more patches"};
-  std::string out;
-  std::vector<std::uint32_t> rooms{1000, 2000, 4000, 8000, 15000, 30000, 60000};
+  std::string out, expected;
+  bool reduced = false;
   app.add_option("-o,--output", out, "Folder for the table and the plot");
-  app.add_option("--rooms", rooms, "Numbers of polygons");
+  app.add_flag("--reduced", reduced, "Small rooms only");
+  app.add_option("--check", expected, "Compare counts with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
-  for (const std::uint32_t polygons : rooms) {
-    const Growth g = measure(polygons, 11);
-    fmt::print("{} patches: edit {:.3f} ms, {:.0f} KB; order {:.3f} ms; shot {:.3f} ms, {} tests\n", g.patches, 1e3 * g.edit,
-               g.bytes / 1024, 1e3 * g.rank, 1e3 * g.shot, g.tests);
+  CsvTable table{{"rooms", "patches", "remade", "candidates", "tests", "edit_ms", "edit_kilobytes", "order_ms", "shots_ms"},
+                 {}};
+  Plot plot{"The same object moves in rooms of ever more patches", "patches", "processor time [ms], memory [MB]"};
+  const std::vector<std::uint32_t> sizes = reduced ? std::vector<std::uint32_t>{1000, 2000}
+                                                   : std::vector<std::uint32_t>{1000, 2000, 4000, 8000, 15000, 30000, 60000};
+  for (const Family family : {Family::detail, Family::row}) {
+    PlotSeries edits{fmt::format("{}: an edit [ms]", name_of(family)), {}};
+    PlotSeries shots{fmt::format("{}: its order and its {} shots [ms]", name_of(family), kShotsBefore), {}};
+    PlotSeries memory{fmt::format("{}: memory of an edit [MB]", name_of(family)), {}, true};
+    for (const std::uint32_t polygons : sizes) {
+      const Growth g = measure(family, polygons);
+      table.rows.push_back({name_of(family), fmt::format("{}", g.patches), fmt::format("{}", g.remade),
+                            digits(g.candidates), digits(g.tests), fmt::format("{:.3g}", 1e3 * g.edit),
+                            fmt::format("{:.3g}", g.bytes / 1024), fmt::format("{:.3g}", 1e3 * g.order),
+                            fmt::format("{:.3g}", 1e3 * g.shots)});
+      fmt::print(stderr, "{}\n", fmt::join(table.rows.back(), ", "));
+      const auto patches = static_cast<double>(g.patches);
+      edits.points.emplace_back(patches, 1e3 * g.edit);
+      shots.points.emplace_back(patches, 1e3 * (g.order + g.shots));
+      memory.points.emplace_back(patches, g.bytes / 1e6);
+    }
+    for (const PlotSeries& series : {edits, shots, memory}) {
+      fmt::print(stderr, "{}: grows by the {:.2f}th power of the patches\n", series.name, slope(series.points));
+      plot.series.push_back(series);
+    }
   }
-  return 0;
+  if (!out.empty()) {
+    std::filesystem::create_directories(out);
+    table.write(std::filesystem::path(out) / "results.csv");
+    plot.note = plot_note();
+    write_plot(std::filesystem::path(out) / "plot.svg", plot);
+  }
+  if (expected.empty()) return 0;
+  return verdict(differences(table, CsvTable::read(expected), 2, 0.001,
+                             {"edit_ms", "edit_kilobytes", "order_ms", "shots_ms"}));
 }
 
 }  // namespace
