@@ -9,6 +9,7 @@
 
 #include "geometry/edge_matching.h"
 #include "geometry/facets.h"
+#include "geometry/polygon_soup_store.h"
 #include "geometry/shell.h"
 #include "geometry/surface_pieces.h"
 
@@ -89,60 +90,126 @@ int side_of(const Plane& plane, const Vec3& v, StageCounts& counts) {
   return orientation(*plane.points.a, *plane.points.b, *plane.points.c, v, counts);
 }
 
-PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role> roles)
-    : roles_(roles.begin(), roles.end()) {
-  if (roles.empty()) roles_.assign(polygons.size(), Role::patch);
-  if (roles_.size() != polygons.size()) throw std::invalid_argument("PolygonSoup: as many roles as polygons, or none");
-  add_facets(polygons);
-  find_neighbours();
-  find_shells();
+PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role> roles, std::span<const Rank> ranks,
+                         std::uint32_t spare)
+    : store_(std::make_shared<Store>()) {
+  if (!roles.empty() && roles.size() != polygons.size())
+    throw std::invalid_argument("PolygonSoup: as many roles as polygons, or none");
+  Store& store = *store_;
+  store.roles.assign(roles.begin(), roles.end());
+  if (roles.empty()) store.roles.assign(polygons.size(), Role::patch);
+  store.ranks.assign(ranks.begin(), ranks.end());
+  for (std::size_t p = store.ranks.size(); p < polygons.size(); ++p) store.ranks.push_back(p);
+  store.first_facet.push_back(0);
+  Cut cut;
+  std::size_t facets = spare, corners = std::size_t{4} * spare;
+  for (const Polygon& polygon : polygons) {
+    cut.push_back(cut_into_facets(polygon));
+    facets += cut.back().size();
+    for (const Loop& loop : cut.back()) corners += loop.size();
+  }
+  store.facets.resize(facets);
+  store.first_corners.resize(facets);
+  store.corners.reserve(corners);
+  if (spare > 0) {
+    const std::size_t most = polygons.size() + spare;
+    store.vertices.reserve(corners);
+    store.shells.reserve(facets / 4 + 1);
+    store.roles.reserve(most);
+    store.ranks.reserve(most);
+    store.first_facet.reserve(most + 1);
+    store.closed.reserve(most);
+  }
+  add_facets(cut, nullptr);
+  find_neighbours(0);
+  find_shells(0);
+  set_spans();
+  coplanar_ = Paged<std::vector<std::uint32_t>>(facets_.size());
   find_coplanar();
-  find_closed(polygons);
+  for (std::uint32_t f = 0; f < used_ && !store.closed_known; ++f) store.closed_known = is_against_patch(f);
+  mark_closed(polygons);
   build_index();
 }
 
-void PolygonSoup::add_facets(std::span<const Polygon> polygons) {
+/// After what was added.
+void PolygonSoup::set_spans() {
+  const Store& store = *store_;
+  vertices_ = store.vertices;
+  facets_ = store.facets;
+  corners_ = store.corners;
+  first_corners_ = store.first_corners;
+  shells_ = store.shells;
+  roles_ = store.roles;
+  first_facet_ = store.first_facet;
+  used_ = store.used;
+}
+
+/// known: a soup whose vertices are used where they are the same.
+void PolygonSoup::add_facets(const Cut& cut, const PolygonSoup* known) {
+  Store& store = *store_;
   std::unordered_map<Vec3, std::uint32_t, HashPoint> vertex_of;
-  first_facet_.push_back(0);
-  for (std::uint32_t p = 0; p < polygons.size(); ++p) {
-    for (const Loop& loop : cut_into_facets(polygons[p])) {
-      Facet f;
-      f.first = static_cast<std::uint32_t>(corners_.size());
+  const std::uint32_t first = store.used;
+  const auto place_of = [&](const Vec3& point) {
+    const auto [place, is_new] = vertex_of.try_emplace(point, static_cast<std::uint32_t>(store.vertices.size()));
+    if (!is_new) return place->second;
+    if (known != nullptr) {
+      const std::uint32_t there = known->vertex_at(point);
+      if (there != kNone) return place->second = there;
+    }
+    store.vertices.push_back(point);
+    for (int axis = 0; axis < 3; ++axis) extent_ = std::max(extent_, std::fabs(point[axis]));
+    return place->second;
+  };
+  for (const std::vector<Loop>& loops : cut) {
+    const auto polygon = static_cast<std::uint32_t>(store.first_facet.size() - 1);
+    for (const Loop& loop : loops) {
+      Facet& f = store.facets[store.used++];
+      f.first = static_cast<std::uint32_t>(store.corners.size());
       f.count = static_cast<std::uint32_t>(loop.size());
-      f.polygon = p;
-      for (const Vec3& point : loop) {
-        const auto [place, is_new] = vertex_of.try_emplace(point, static_cast<std::uint32_t>(vertices_.size()));
-        if (is_new) {
-          vertices_.push_back(point);
-          for (int axis = 0; axis < 3; ++axis) extent_ = std::max(extent_, std::fabs(point[axis]));
-        }
-        corners_.push_back({point, place->second, kNone});
-      }
-      facets_.push_back(f);
+      f.polygon = polygon;
+      for (const Vec3& point : loop) store.corners.push_back({point, place_of(point), kNone});
     }
-    first_facet_.push_back(static_cast<std::uint32_t>(facets_.size()));
+    store.first_facet.push_back(store.used);
   }
-  for (Facet& f : facets_) {
+  set_spans();
+  for (std::uint32_t k = first; k < store.used; ++k) {
+    Facet& f = store.facets[k];
     f.plane = plane_of(vertices_, corners(f));
-    FirstCorners& first = first_corners_.emplace_back();
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Corner& c = corners(f)[k < f.count ? k : 0];
-      first.x[k] = c.at.x;
-      first.y[k] = c.at.y;
-      first.z[k] = c.at.z;
-      first.vertex[k] = c.vertex;
+    FirstCorners& of_facet = store.first_corners[k];
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Corner& c = corners(f)[i < f.count ? i : 0];
+      of_facet.x[i] = c.at.x;
+      of_facet.y[i] = c.at.y;
+      of_facet.z[i] = c.at.z;
+      of_facet.vertex[i] = c.vertex;
     }
-    first.all = f.count <= 4;
+    of_facet.all = f.count <= 4;
   }
 }
 
-void PolygonSoup::find_neighbours() {
+/// The vertex at a point, of a facet that is found there; kNone: none.
+std::uint32_t PolygonSoup::vertex_at(const Vec3& point) const {
+  Box box;
+  box.extend(point);
+  std::vector<std::uint32_t> near;
+  find_facets(box, near);
+  for (const std::uint32_t f : near) {
+    for (const Corner& c : corners(facets_[f])) {
+      if (c.at == point) return c.vertex;
+    }
+  }
+  return kNone;
+}
+
+/// Of facets from `first` on, which share no edge with those before.
+void PolygonSoup::find_neighbours(std::uint32_t first) {
+  Store& store = *store_;
   struct Use {
     std::uint32_t facet, corner, from;
   };
   std::unordered_map<std::uint64_t, std::vector<Use>> uses;
-  uses.reserve(corners_.size());
-  for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+  uses.reserve(store.corners.size() - (first < store.used ? store.facets[first].first : store.corners.size()));
+  for (std::uint32_t f = first; f < store.used; ++f) {
     if (roles_[facets_[f].polygon] == Role::unoccluding) continue;
     const auto c = corners(facets_[f]);
     for (std::uint32_t k = 0; k < c.size(); ++k) {
@@ -151,8 +218,8 @@ void PolygonSoup::find_neighbours() {
     }
   }
   const auto join = [&](const Use& one, const Use& other) {
-    corners_[one.corner].neighbour = other.facet;
-    corners_[other.corner].neighbour = one.facet;
+    store.corners[one.corner].neighbour = other.facet;
+    store.corners[other.corner].neighbour = one.facet;
   };
   std::vector<DirectedEdge> group;
   for (const auto& [key, use] : uses) {
@@ -176,14 +243,16 @@ void PolygonSoup::find_neighbours() {
   }
 }
 
-void PolygonSoup::find_shells() {
+/// Of facets from `first` on, whose neighbours are among them.
+void PolygonSoup::find_shells(std::uint32_t first) {
+  Store& store = *store_;
   StageCounts counts;
-  std::vector<bool> visited(facets_.size(), false);
+  std::vector<bool> visited(store.used - first, false);
   std::vector<std::uint32_t> component;
-  for (std::uint32_t seed = 0; seed < facets_.size(); ++seed) {
-    if (visited[seed]) continue;
+  for (std::uint32_t seed = first; seed < store.used; ++seed) {
+    if (visited[seed - first]) continue;
     component.assign(1, seed);
-    visited[seed] = true;
+    visited[seed - first] = true;
     bool closed = true;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     Box box;
@@ -194,8 +263,8 @@ void PolygonSoup::find_shells() {
         if (i >= 2) triangles.push_back({c[0].vertex, c[i - 1].vertex, c[i].vertex});
         if (c[i].neighbour == kNone) {
           closed = false;
-        } else if (!visited[c[i].neighbour]) {
-          visited[c[i].neighbour] = true;
+        } else if (!visited[c[i].neighbour - first]) {
+          visited[c[i].neighbour - first] = true;
           component.push_back(c[i].neighbour);
         }
       }
@@ -207,7 +276,7 @@ void PolygonSoup::find_shells() {
     std::sort(shell.facets.begin(), shell.facets.end());
     shell.convex = true;
     for (const auto f : shell.facets) {
-      facets_[f].shell = static_cast<std::uint32_t>(shells_.size());
+      store.facets[f].shell = static_cast<std::uint32_t>(store.shells.size());
       const auto loop = corners(facets_[f]);
       for (std::size_t k = 0; k < loop.size(); ++k) {
         const Corner& c = loop[k];
@@ -222,69 +291,87 @@ void PolygonSoup::find_shells() {
     }
     std::sort(shell.vertices.begin(), shell.vertices.end());
     shell.vertices.erase(std::unique(shell.vertices.begin(), shell.vertices.end()), shell.vertices.end());
-    shells_.push_back(std::move(shell));
+    store.shells.push_back(std::move(shell));
   }
+}
+
+Box PolygonSoup::box_of(std::uint32_t facet) const {
+  Box box;
+  for (const Corner& c : corners(facets_[facet])) box.extend(c.at);
+  return box;
+}
+
+/// Whether facet t lies in the plane of f, exactly or by identity.
+bool PolygonSoup::lies_in_plane(std::uint32_t t, std::uint32_t f) const {
+  StageCounts counts;
+  const Plane& plane = facets_[f].plane;
+  // Facets of a polygon that is planar but for rounding are in one plane by identity.
+  double flat = 0;
+  if (facets_[t].polygon == facets_[f].polygon) {
+    const Box box = box_of(f);
+    flat = 0x1p-40 * norm(box.upper - box.lower) * norm(plane.normal);
+  }
+  return std::ranges::all_of(corners(facets_[t]), [&](const Corner& c) {
+    return std::fabs(dot(plane.normal, c.at - plane.origin)) < flat || side_of(plane, c.at, counts) == 0;
+  });
 }
 
 void PolygonSoup::find_coplanar() {
-  std::vector<Box> boxes(facets_.size());
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    for (const Corner& c : corners(facets_[f])) boxes[f].extend(vertices_[c.vertex]);
-  }
+  std::vector<Box> boxes(store_->used);
+  for (std::uint32_t f = 0; f < boxes.size(); ++f) boxes[f] = box_of(f);
   const SpatialIndex index(boxes);
-  StageCounts counts;
-  coplanar_first_.assign(1, 0);
   std::vector<std::uint32_t> near;
-  for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+  for (std::uint32_t f = 0; f < boxes.size(); ++f) {
     near.clear();
     index.find(boxes[f], near);
+    std::erase_if(near, [&](std::uint32_t t) {
+      return t == f || roles_[facets_[t].polygon] == Role::unoccluding || !boxes[t].overlaps(boxes[f]) ||
+             !lies_in_plane(t, f);
+    });
+    if (near.empty()) continue;
     std::sort(near.begin(), near.end());
-    const Plane& plane = facets_[f].plane;
-    for (const auto t : near) {
-      if (t == f || roles_[facets_[t].polygon] == Role::unoccluding) continue;
-      // Facets of a polygon that is planar but for rounding are in one plane by identity.
-      const double flat = facets_[t].polygon == facets_[f].polygon
-                              ? 0x1p-40 * norm(boxes[f].upper - boxes[f].lower) * norm(plane.normal)
-                              : 0;
-      const auto in_plane = [&](const Corner& c) {
-        const Vec3& v = vertices_[c.vertex];
-        return std::fabs(dot(plane.normal, v - plane.origin)) < flat || side_of(plane, v, counts) == 0;
-      };
-      const auto c = corners(facets_[t]);
-      if (std::all_of(c.begin(), c.end(), in_plane)) coplanar_.push_back(t);
-    }
-    coplanar_first_.push_back(static_cast<std::uint32_t>(coplanar_.size()));
+    coplanar_.set(f, near);
   }
 }
 
+/// Whether a patch lies against the facet in its plane.
+bool PolygonSoup::is_against_patch(std::uint32_t f) const {
+  return std::ranges::any_of(coplanar(f), [&](std::uint32_t t) {
+    return roles_[facets_[t].polygon] == Role::patch && dot(facets_[t].plane.normal, facets_[f].plane.normal) < 0;
+  });
+}
+
 /// Which polygons bound matter on their backs: those of closed pieces of surface, whether they look out (solids) or in
-/// (rooms). The two sides of a sheet enclose nothing.
-void PolygonSoup::find_closed(std::span<const Polygon> polygons) {
-  closed_.assign(polygons.size(), false);
-  bool contact = false;
-  for (std::uint32_t f = 0; f < facets_.size() && !contact; ++f) {
-    for (const std::uint32_t t : coplanar(f)) {
-      contact = contact || (roles_[facets_[t].polygon] == Role::patch &&
-                            dot(facets_[t].plane.normal, facets_[f].plane.normal) < 0);
-    }
-  }
-  if (!contact) return;
+/// (rooms). The two sides of a sheet enclose nothing. Of the last polygons of the soup.
+void PolygonSoup::mark_closed(std::span<const Polygon> polygons) {
+  Store& store = *store_;
+  const std::size_t first = store.closed.size();
+  store.closed.resize(first + polygons.size(), 0);
+  if (!store.closed_known) return;
   for (const SurfacePiece& piece : find_surface_pieces(polygons).pieces) {
     if (!piece.closed || piece.volume == 0) continue;
-    for (const std::uint32_t p : piece.polygons) closed_[p] = true;
+    for (const std::uint32_t p : piece.polygons) store.closed[first + p] = 1;
   }
+}
+
+/// Of the index: the facets from first_facet on, and the convex shells from first_shell on.
+std::vector<SpatialIndex::Item> PolygonSoup::items_from(std::uint32_t first_facet, std::uint32_t first_shell) const {
+  std::vector<SpatialIndex::Item> items;
+  for (std::uint32_t f = first_facet; f < store_->used; ++f) {
+    const bool of_convex_shell = facets_[f].shell != kNone && shells_[facets_[f].shell].convex;
+    if (roles_[facets_[f].polygon] == Role::unoccluding || of_convex_shell) continue;
+    items.push_back({f, box_of(f)});
+  }
+  const auto facets = static_cast<std::uint32_t>(facets_.size());
+  for (std::uint32_t s = first_shell; s < shells_.size(); ++s) {
+    if (shells_[s].convex) items.push_back({facets + s, shells_[s].box});
+  }
+  return items;
 }
 
 void PolygonSoup::build_index() {
   std::vector<Box> boxes(facets_.size() + shells_.size());
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    const bool of_convex_shell = facets_[f].shell != kNone && shells_[facets_[f].shell].convex;
-    if (roles_[facets_[f].polygon] == Role::unoccluding || of_convex_shell) continue;
-    for (const Corner& c : corners(facets_[f])) boxes[f].extend(vertices_[c.vertex]);
-  }
-  for (std::size_t s = 0; s < shells_.size(); ++s) {
-    if (shells_[s].convex) boxes[facets_.size() + s] = shells_[s].box;
-  }
+  for (const SpatialIndex::Item& item : items_from(0, 0)) boxes[item.number] = item.box;
   index_ = SpatialIndex(boxes);
 }
 
@@ -302,12 +389,12 @@ void PolygonSoup::prefetch(std::span<const std::uint32_t> items) const {
 /// for all of them, so that wherever they overlap exactly one is seen.
 std::pair<int, std::int64_t> PolygonSoup::depth_in_plane(std::uint32_t f, bool from_front) const {
   enum { sheet, matter_before, patch, matter_behind, back_of_patch };
-  const std::int64_t polygon = facets_[f].polygon;
+  const auto polygon = static_cast<std::int64_t>(store_->ranks[facets_[f].polygon]);
   const Role role = roles_[facets_[f].polygon];
   if (role == Role::sheet) return {sheet, polygon};
   if (role == Role::solid_face) return {from_front ? matter_behind : matter_before, polygon};
   if (from_front) return {patch, -polygon};
-  return {closed_[facets_[f].polygon] ? matter_before : back_of_patch, polygon};
+  return {store_->closed[facets_[f].polygon] != 0 ? matter_before : back_of_patch, polygon};
 }
 
 bool PolygonSoup::covers(std::uint32_t t, std::uint32_t f) const {

@@ -1,13 +1,17 @@
 #pragma once
 // The polygons of a scene, cut into facets, with what does not depend on the point of view: merged vertices, planes,
-// neighbours, shells, coplanar contacts and a spatial index. Immutable, so any number of threads may look at it.
+// neighbours, shells, coplanar contacts and a spatial index. Immutable, so any number of threads may look at it. A soup
+// that another was made from by an edit shares with it all that is the same.
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "geometry/paged.h"
 #include "geometry/polygon.h"
 #include "geometry/predicates.h"
 #include "geometry/spatial_index.h"
@@ -78,34 +82,65 @@ struct Shell {
 
 class PolygonSoup {
  public:
+  /// Where polygons stand among others that lie in the same plane: what is less counts as earlier in the scene.
+  using Rank = std::uint64_t;
+
   /// Takes polygons without defects other than zero area (those have no facets). roles: one for each polygon, or empty
-  /// for all `patch`.
-  explicit PolygonSoup(std::span<const Polygon> polygons, std::span<const Role> roles = {});
-  PolygonSoup(const PolygonSoup&) = delete;  // planes point into vertices()
+  /// for all `patch`. ranks: likewise, or empty for the order in which they are given. spare: room for so many facets that
+  /// later edits bring (`edited`), and for as many polygons.
+  explicit PolygonSoup(std::span<const Polygon> polygons, std::span<const Role> roles = {},
+                       std::span<const Rank> ranks = {}, std::uint32_t spare = 0);
+
+  struct Arrival {
+    std::span<const Polygon> polygons;
+    std::span<const Role> roles;  ///< one for each; none is unoccluding
+    std::span<const Rank> ranks;  ///< one for each
+  };
+  struct PolygonRange {
+    std::uint32_t first = 0, last = 0;
+  };
+
+  /// The soup in which the polygons first … last − 1 of `before` are gone and others have come (`arrived`). All other polygons, facets and shells keep their numbers; those that are gone are there still, but
+  /// in nothing that is searched. Takes time and memory by what goes and comes and by what lies beside that, not by all.
+  /// None where it cannot be told from that alone what others become, and the soup must be made anew: what goes or comes
+  /// meets edges of others or, with edges that it leaves open, their faces; patches lie against each other where none
+  /// did; the extent changes; the spare room is used up.
+  /// No two threads may make soups from `before`, or from soups that share with it, at a time.
+  static std::optional<PolygonSoup> edited(const PolygonSoup& before, PolygonRange gone, const Arrival& arrival);
+
+  PolygonSoup(const PolygonSoup&) = delete;  // only edits share
   PolygonSoup& operator=(const PolygonSoup&) = delete;
   PolygonSoup(PolygonSoup&&) = default;
   PolygonSoup& operator=(PolygonSoup&&) = default;
 
+  /// Whether one was made from the other, or both from a third, by edits.
+  bool shares_with(const PolygonSoup& other) const { return store_ == other.store_; }
+  /// The numbers of the polygons that came with the last edit.
+  PolygonRange arrived() const { return arrived_; }
+  /// Facets that lie beside what the last edit changed, and the new ones; ascending.
+  std::span<const std::uint32_t> touched() const { return touched_; }
+
   std::span<const Vec3> vertices() const { return vertices_; }
+  /// With those that are gone, and spare ones, which have no corners.
   std::span<const Facet> facets() const { return facets_; }
+  bool is_present(std::uint32_t facet) const;
   std::span<const Corner> corners(const Facet& f) const { return {corners_.data() + f.first, f.count}; }
   const FirstCorners& first_corners(std::uint32_t facet) const { return first_corners_[facet]; }
 
+  /// With those that are gone.
   std::size_t polygon_count() const { return roles_.size(); }
   Role role(std::uint32_t polygon) const { return roles_[polygon]; }
 
   /// The facets of polygon p are first_facet(p) … first_facet(p + 1) − 1.
   std::uint32_t first_facet(std::uint32_t polygon) const { return first_facet_[polygon]; }
 
-  /// Closed manifolds that bound a solid (shell.h). A ray from outside the box meets a front face of the shell before
+  /// With those that are gone. Closed manifolds that bound a solid (shell.h). A ray from outside the box meets a front face of the shell before
   /// any back face: back faces hide nothing that front faces do not.
   std::span<const Shell> shells() const { return shells_; }
 
   /// Other facets that lie exactly in the plane of facet f, or of the same polygon within rounding (2^-40 of f's size),
   /// and touch its box, ascending.
-  std::span<const std::uint32_t> coplanar(std::uint32_t f) const {
-    return {coplanar_.data() + coplanar_first_[f], coplanar_.data() + coplanar_first_[f + 1]};
-  }
+  std::span<const std::uint32_t> coplanar(std::uint32_t f) const { return coplanar_[f]; }
 
   /// Whether facet t, one of coplanar(f), covers the front of f where they overlap (Role). Facets of one polygon never
   /// do.
@@ -128,23 +163,42 @@ class PolygonSoup {
   double extent() const { return extent_; }
 
  private:
-  void add_facets(std::span<const Polygon> polygons);
-  void find_neighbours();
-  void find_shells();
+  struct Store;  // what edited soups share: each place of its arrays is written once
+  using Cut = std::vector<std::vector<std::vector<Vec3>>>;  // by polygon, the corners of its facets
+
+  PolygonSoup() = default;
+  void set_spans();
+  void add_facets(const Cut& cut, const PolygonSoup* known);
+  std::uint32_t vertex_at(const Vec3& point) const;
+  void find_neighbours(std::uint32_t first);
+  void find_shells(std::uint32_t first);
   void find_coplanar();
-  void find_closed(std::span<const Polygon> polygons);
+  void mark_closed(std::span<const Polygon> polygons);
   void build_index();
+  bool lies_in_plane(std::uint32_t t, std::uint32_t f) const;
+  Box box_of(std::uint32_t facet) const;
+  void find_facets(const Box& box, std::vector<std::uint32_t>& found) const;
+  bool joins_others(std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& beside) const;
+  bool joins(std::uint32_t f, std::uint32_t g, double near) const;
+  void leave(std::uint32_t first, std::uint32_t last);
+  void update_coplanar(std::uint32_t first, std::span<const std::uint32_t> beside);
+  bool is_against_patch(std::uint32_t f) const;
+  std::vector<SpatialIndex::Item> items_from(std::uint32_t first_facet, std::uint32_t first_shell) const;
   std::pair<int, std::int64_t> depth_in_plane(std::uint32_t f, bool from_front) const;
 
-  std::vector<Vec3> vertices_;
-  std::vector<Facet> facets_;
-  std::vector<Corner> corners_;
-  std::vector<FirstCorners> first_corners_;  // by facet
-  std::vector<Shell> shells_;
-  std::vector<Role> roles_;
-  std::vector<bool> closed_;  // by polygon: part of a closed surface; known only where patches lie against each other
-  std::vector<std::uint32_t> first_facet_;
-  std::vector<std::uint32_t> coplanar_, coplanar_first_;
+  std::shared_ptr<Store> store_;
+  std::span<const Vec3> vertices_;
+  std::span<const Facet> facets_;
+  std::span<const Corner> corners_;
+  std::span<const FirstCorners> first_corners_;  // by facet
+  std::span<const Shell> shells_;
+  std::span<const Role> roles_;                  // by polygon
+  std::span<const std::uint32_t> first_facet_;   // by polygon, and the end
+  Paged<std::vector<std::uint32_t>> coplanar_;   // by facet
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> gone_;  // facets first … last − 1, ascending
+  std::uint32_t used_ = 0;  ///< facets before the spare ones
+  PolygonRange arrived_;
+  std::vector<std::uint32_t> touched_;
   SpatialIndex index_;
   double extent_ = 0;
 };

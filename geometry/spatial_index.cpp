@@ -88,27 +88,27 @@ std::size_t split(std::span<std::uint32_t> items, std::span<const Box> boxes) {
 
 }  // namespace
 
-SpatialIndex::SpatialIndex(std::span<const Box> boxes) {
+SpatialIndex::Tree::Tree(std::span<const Box> boxes) {
   std::vector<std::uint32_t> items;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     if (boxes[i].lower.x > boxes[i].upper.x) continue;
     items.push_back(i);
-    bounds_.extend(boxes[i]);
+    bounds.extend(boxes[i]);
   }
   if (items.empty()) return;
   double size = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    centre_[axis] = 0.5 * bounds_.lower[axis] + 0.5 * bounds_.upper[axis];
-    size = std::max(size, bounds_.upper[axis] - centre_[axis]);
+    centre[axis] = 0.5 * bounds.lower[axis] + 0.5 * bounds.upper[axis];
+    size = std::max(size, bounds.upper[axis] - centre[axis]);
   }
-  per_size_ = size > 0 ? std::ldexp(1.0, -std::clamp(std::ilogb(size) + 1, -1000, 1000)) : 1;
-  nodes_.reserve(boxes.size() / 4 + 1);
+  per_size = size > 0 ? std::ldexp(1.0, -std::clamp(std::ilogb(size) + 1, -1000, 1000)) : 1;
+  nodes.reserve(boxes.size() / 4 + 1);
   build(items, boxes, 0);
 }
 
-std::int32_t SpatialIndex::build(std::span<std::uint32_t> items, std::span<const Box> boxes, int depth) {
-  const auto index = static_cast<std::int32_t>(nodes_.size());
-  nodes_.emplace_back();
+std::int32_t SpatialIndex::Tree::build(std::span<std::uint32_t> items, std::span<const Box> boxes, int depth) {
+  const auto index = static_cast<std::int32_t>(nodes.size());
+  nodes.emplace_back();
   // The parts of the node: the largest is split until there are enough or only single items.
   std::array<std::span<std::uint32_t>, kWidth> part{items};
   std::size_t parts = 1;
@@ -125,7 +125,7 @@ std::int32_t SpatialIndex::build(std::span<std::uint32_t> items, std::span<const
     if (k < parts) {
       child = part[k].size() == 1 ? -1 - static_cast<std::int32_t>(part[k][0]) : build(part[k], boxes, depth + 1);
     }
-    Node& node = nodes_[static_cast<std::size_t>(index)];
+    Node& node = nodes[static_cast<std::size_t>(index)];
     const Box box = k < parts ? box_of(part[k], boxes) : Box{};
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
@@ -137,8 +137,8 @@ std::int32_t SpatialIndex::build(std::span<std::uint32_t> items, std::span<const
   return index;
 }
 
-void SpatialIndex::find(std::span<const HalfSpace> region, const Box& box, std::vector<std::uint32_t>& found) const {
-  if (nodes_.empty()) return;
+void SpatialIndex::Tree::find(std::span<const HalfSpace> region, const Box& box, std::vector<std::uint32_t>& found) const {
+  if (nodes.empty()) return;
   using Floats = float __attribute__((vector_size(kWidth * sizeof(float))));
   using Ints = std::int32_t __attribute__((vector_size(kWidth * sizeof(std::int32_t))));
   const auto floats = [](const std::array<float, kWidth>& eight) {
@@ -159,8 +159,8 @@ void SpatialIndex::find(std::span<const HalfSpace> region, const Box& box, std::
   for (const HalfSpace& h : region.first(std::min(region.size(), kLimits))) {
     const double size = std::max({std::fabs(h.normal.x), std::fabs(h.normal.y), std::fabs(h.normal.z)});
     if (!(size > 0)) continue;
-    const double at_centre = dot(h.normal, centre_), parts = std::fabs(h.offset) + 3 * size * norm(centre_);
-    const double offset = (h.offset - at_centre - 0x1p-50 * parts) * per_size_ / size - 0x1p-19;
+    const double at_centre = dot(h.normal, centre), parts = std::fabs(h.offset) + 3 * size * norm(centre);
+    const double offset = (h.offset - at_centre - 0x1p-50 * parts) * per_size / size - 0x1p-19;
     limits[limit_count++] = {static_cast<float>(h.normal.x / size),
                              static_cast<float>(h.normal.y / size),
                              static_cast<float>(h.normal.z / size),
@@ -178,7 +178,7 @@ void SpatialIndex::find(std::span<const HalfSpace> region, const Box& box, std::
   std::size_t top = 0;
   stack[top++] = 0;
   while (top > 0) {
-    const Node& node = nodes_[static_cast<std::size_t>(stack[--top])];
+    const Node& node = nodes[static_cast<std::size_t>(stack[--top])];
     Ints meets = (floats(node.bounds[0][0]) <= box_upper[0]) & (floats(node.bounds[1][0]) >= box_lower[0]) &
                  (floats(node.bounds[0][1]) <= box_upper[1]) & (floats(node.bounds[1][1]) >= box_lower[1]) &
                  (floats(node.bounds[0][2]) <= box_upper[2]) & (floats(node.bounds[1][2]) >= box_lower[2]);
@@ -196,7 +196,7 @@ void SpatialIndex::find(std::span<const HalfSpace> region, const Box& box, std::
       if (child < 0) {
         found.push_back(static_cast<std::uint32_t>(-1 - child));
       } else {
-        const Node* next = &nodes_[static_cast<std::size_t>(child)];
+        const Node* next = &nodes[static_cast<std::size_t>(child)];
         for (std::size_t line = 0; line < sizeof(Node); line += 64) {
           __builtin_prefetch(reinterpret_cast<const char*>(next) + line);
         }
@@ -204,6 +204,47 @@ void SpatialIndex::find(std::span<const HalfSpace> region, const Box& box, std::
       }
     }
   }
+}
+
+SpatialIndex::SpatialIndex(std::span<const Box> boxes) : tree_(std::make_shared<const Tree>(boxes)) {
+  bounds_ = tree_->bounds;
+}
+
+SpatialIndex SpatialIndex::changed(std::span<const std::uint32_t> gone, std::span<const Item> added) const {
+  SpatialIndex after = *this;
+  for (const std::uint32_t item : gone) {
+    const auto own = std::ranges::find(after.added_, item, &Item::number);
+    if (own != after.added_.end()) {
+      after.added_.erase(own);
+    } else {
+      after.gone_.push_back(item);
+    }
+  }
+  std::ranges::sort(after.gone_);
+  after.added_.insert(after.added_.end(), added.begin(), added.end());
+  std::vector<Box> boxes;
+  for (const Item& item : after.added_) {
+    boxes.push_back(item.box);
+    after.bounds_.extend(item.box);
+  }
+  after.added_tree_ = boxes.empty() ? nullptr : std::make_shared<const Tree>(boxes);
+  return after;
+}
+
+void SpatialIndex::find(std::span<const HalfSpace> region, const Box& box, std::vector<std::uint32_t>& found) const {
+  if (!tree_) return;
+  const std::size_t first = found.size();
+  tree_->find(region, box, found);
+  if (!gone_.empty()) {
+    const auto is_gone = [&](std::uint32_t item) {
+      return gone_.front() <= item && item <= gone_.back() && std::ranges::binary_search(gone_, item);
+    };
+    found.erase(std::remove_if(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(), is_gone), found.end());
+  }
+  if (!added_tree_) return;
+  const std::size_t first_added = found.size();
+  added_tree_->find(region, box, found);
+  for (std::size_t k = first_added; k < found.size(); ++k) found[k] = added_[found[k]].number;
 }
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -48,11 +49,20 @@ struct HalfSpace {
 /// Bounding volume hierarchy with eight children a node, split by the surface area heuristic. Searches are
 /// conservative: nothing that meets the region is left out, some that does not may be returned: boxes are held in
 /// single precision, relative to the bounds of all. Items with an empty box are never found. The same boxes give the
-/// same tree.
+/// same tree. Copies share it.
 class SpatialIndex {
  public:
   SpatialIndex() = default;
   explicit SpatialIndex(std::span<const Box> boxes);
+
+  struct Item {
+    std::uint32_t number = 0;
+    Box box;
+  };
+
+  /// The index without the items `gone` and with those `added`, whose numbers are new. The tree is shared, what was added
+  /// since it was made has a small one of its own: takes time by what has changed since then.
+  SpatialIndex changed(std::span<const std::uint32_t> gone, std::span<const Item> added) const;
 
   /// Appends to `found` every item whose box reaches into each of the half-spaces and touches or overlaps the box.
   void find(std::span<const HalfSpace> region, const Box& box, std::vector<std::uint32_t>& found) const;
@@ -60,7 +70,7 @@ class SpatialIndex {
   /// Appends to `found` every item whose box touches or overlaps the box.
   void find(const Box& box, std::vector<std::uint32_t>& found) const { find({}, box, found); }
 
-  /// Around everything; empty for no boxes.
+  /// Around everything, and what is gone; empty for no boxes.
   const Box& bounds() const { return bounds_; }
 
  private:
@@ -70,16 +80,25 @@ class SpatialIndex {
     std::array<std::int32_t, kWidth> child;  ///< ≥ 0: a node; < 0: item −1 − child; unused places have an empty box
   };
 
-  std::int32_t build(std::span<std::uint32_t> items, std::span<const Box> boxes, int depth);
+  struct Tree {
+    explicit Tree(std::span<const Box> boxes);
+    void find(std::span<const HalfSpace> region, const Box& box, std::vector<std::uint32_t>& found) const;
+    std::int32_t build(std::span<std::uint32_t> items, std::span<const Box> boxes, int depth);
 
-  /// (v − centre) / size, along one axis: between −1 and 1 for all that is in the bounds, with a rounding error below
-  /// 2^-50 times 1 + |v / size|.
-  double scaled(double v, int axis) const { return (v - centre_[axis]) * per_size_; }
+    /// (v − centre) / size, along one axis: between −1 and 1 for all that is in the bounds, with a rounding error below
+    /// 2^-50 times 1 + |v / size|.
+    double scaled(double v, int axis) const { return (v - centre[axis]) * per_size; }
 
-  std::vector<Node> nodes_;
+    std::vector<Node> nodes;
+    Box bounds;
+    Vec3 centre;
+    double per_size = 1;  ///< a power of two, so that no box loses anything but by the shift
+  };
+
+  std::shared_ptr<const Tree> tree_, added_tree_;
+  std::vector<Item> added_;          ///< by their place in added_tree_
+  std::vector<std::uint32_t> gone_;  ///< of tree_, ascending
   Box bounds_;
-  Vec3 centre_;
-  double per_size_ = 1;  ///< a power of two, so that no box loses anything but by the shift
 };
 
 }  // namespace exitance

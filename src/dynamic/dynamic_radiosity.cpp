@@ -158,7 +158,8 @@ void DynamicRadiosity::start_over() {
   columns_.clear();
   differences_.clear();
   layers_.erase(layers_.begin(), layers_.end() - 1);
-  std::ranges::fill(layers_.back().shot, CompensatedSum{});
+  layers_.back().shot = {};
+  fit_arrays();
   std::ranges::fill(H_, CompensatedSum{});
   for (std::uint32_t p = 0; p < version().patches(); ++p) refresh(p);
 }
@@ -215,12 +216,12 @@ DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t pat
   const std::vector<FormFactorChange> changes = difference.column(patch, search, known.get(), shot.work);
   if (known && difference.keeps(patch))
     columns_.put(patch, std::make_shared<const FormFactorColumn>(changed_column(*known, difference, changes)));
-  CompensatedSum* const past = layer.shot.data() + std::size_t{patch} * bands_;
   std::vector<double> high(bands_), low(bands_);
   for (std::uint32_t b = 0; b < bands_; ++b) {
-    high[b] = past[b].high();
-    low[b] = past[b].low();
-    past[b] = {};
+    CompensatedSum& past = layer.shot[std::size_t{patch} * bands_ + b];
+    high[b] = past.high();
+    low[b] = past.low();
+    past = {};
   }
   std::vector<std::uint32_t> touched;
   for (const FormFactorChange& c : changes) {
@@ -304,12 +305,17 @@ DynamicRadiosity::Strongest DynamicRadiosity::strongest_of(std::uint32_t object)
   return found;
 }
 
-std::vector<double> DynamicRadiosity::importance_of(const VersionDifference& difference) const {
+std::vector<double> DynamicRadiosity::importance_of(const Layer& layer, const VersionDifference& difference) const {
   switch (importance_.kind) {
     case ImportanceOptions::Kind::exact:
       return exact_importance(difference);
-    case ImportanceOptions::Kind::estimated:
-      return estimated_importance(difference, importance_.points);
+    case ImportanceOptions::Kind::estimated: {
+      std::vector<std::uint32_t> have_shot;
+      for (std::uint32_t p = 0; p < difference.before().patches(); ++p) {
+        if (!is_zero(layer, p)) have_shot.push_back(p);
+      }
+      return estimated_importance(difference, importance_.points, have_shot);
+    }
     case ImportanceOptions::Kind::total:
       break;
   }
@@ -323,7 +329,7 @@ DynamicRadiosity::StrongestChange DynamicRadiosity::strongest_change() {
   for (std::size_t k = 0; k + 1 < layers_.size(); ++k) {
     Layer& layer = layers_[k];
     if (!layer.importance) {
-      layer.importance = std::make_shared<const std::vector<double>>(importance_of(since(layer.version)));
+      layer.importance = std::make_shared<const std::vector<double>>(importance_of(layer, since(layer.version)));
     }
     for (std::uint32_t p = 0; p < version().patches(); ++p) {
       if (!has_to_redistribute(k, p)) continue;

@@ -138,7 +138,7 @@ class DynamicRadiosity {
   struct Layer {
     std::shared_ptr<const SceneVersion> version;
     std::string name;                 ///< of the change that ended it
-    std::vector<CompensatedSum> shot;  ///< by patch and band
+    SharedRows<CompensatedSum> shot;  ///< by patch and band
     std::shared_ptr<const std::vector<double>> importance;  ///< by patch; of all but the present one
   };
 
@@ -150,7 +150,7 @@ class DynamicRadiosity {
   void receive(std::uint32_t element, double F, const double* amount);
   void refresh_patches_of(const std::vector<std::uint32_t>& elements);
   void drop_empty_layers();
-  std::vector<double> importance_of(const VersionDifference& difference) const;
+  std::vector<double> importance_of(const Layer& layer, const VersionDifference& difference) const;
   double luminance_of(const double* values) const;
   bool is_zero(const Layer& layer, std::uint32_t patch) const;
 

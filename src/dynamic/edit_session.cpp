@@ -24,7 +24,8 @@ void count(const DynamicShot& shot, SessionWork& work) {
 }  // namespace
 
 EditSession::EditSession(Scene scene, const SessionOptions& options)
-    : scene_(std::move(scene)), base_(std::make_shared<SceneVersion>(scene_, options.mesh), scene_.scene()) {
+    : scene_(std::move(scene)),
+      base_(std::make_shared<SceneVersion>(scene_, options.mesh), scene_.scene(), options.column_memory) {
   set_options(options);
 }
 

@@ -36,6 +36,7 @@ struct SessionOptions {
   /// Without it what is interrupted by an edit is never redistributed.
   bool log = true;
   double tolerance = 1e-6;  ///< of ‖B − B*‖∞ / max B, worst band: then there is nothing left to do; > 0
+  std::uint64_t column_memory = DynamicRadiosity::kColumnMemory;  ///< for form factors that are kept [bytes]
 };
 
 /// How long to work. 0 is a budget, too: nothing is shot, and all that is to be redistributed stays in the log.

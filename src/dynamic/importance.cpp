@@ -119,7 +119,8 @@ std::vector<double> exact_importance(const VersionDifference& difference) {
   return importance;
 }
 
-std::vector<double> estimated_importance(const VersionDifference& difference, std::uint32_t points) {
+std::vector<double> estimated_importance(const VersionDifference& difference, std::uint32_t points,
+                                         std::span<const std::uint32_t> patches) {
   std::vector<double> importance = own_areas(difference);
   const auto add = [&](const SceneVersion& version, const ObjectSlot& slot) {
     if (!slot.present) return;
@@ -132,21 +133,21 @@ std::vector<double> estimated_importance(const VersionDifference& difference, st
     const double share = area / 4 / points;
     double scene_area = 0;
     for (const Patch& patch : version.mesh().patches) scene_area += patch.area;
-    for (std::uint32_t p = 0; p < difference.before().patches(); ++p) {
+    for (const std::uint32_t p : patches) {
       if (difference.keeps(p))
         importance[p] += kUnseen * area / 4 * (difference.before().mesh().patches[p].area / scene_area);
     }
     tbb::enumerable_thread_specific<std::unique_ptr<LookPast>> looks(
         [&] { return std::make_unique<LookPast>(version); });
     for (const Vec3& point : points_in(box, points)) {
-      tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(version.patches()), 64),
-                        [&](const auto& some) {
-                          LookPast& look = *looks.local();
-                          for (std::uint32_t p = some.begin(); p < some.end(); ++p) {
-                            if (p < difference.before().patches() && difference.keeps(p))
-                              importance[p] += share * look.form_factor(point, p, slot.facet_first, slot.facet_last);
-                          }
-                        });
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), 64), [&](const auto& some) {
+        LookPast& look = *looks.local();
+        for (std::size_t k = some.begin(); k < some.end(); ++k) {
+          const std::uint32_t p = patches[k];
+          if (difference.keeps(p))
+            importance[p] += share * look.form_factor(point, p, slot.facet_first, slot.facet_last);
+        }
+      });
     }
   };
   for (const std::uint32_t object : difference.objects()) {

@@ -2,6 +2,7 @@
 // Which patches shoot most towards what changed.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "src/dynamic/version_difference.h"
@@ -17,9 +18,11 @@ std::vector<double> exact_importance(const VersionDifference& difference);
 /// that faces the patch receives F B; its form factor sees past all other objects, exactly. It is multiplied with a
 /// quarter of the object's area (what a convex body shows on average), so that it estimates the same power, and the
 /// points' share of it. So that a patch that no point sees is not left to the very end, a fiftieth of what light spread
-/// evenly over the scene would give is added. One point: the middle of the object's box; more: the middles of an even division of it.
+/// evenly over the scene would give is added. One point: the middle of the object's box; more: the middles of an even
+/// division of it. Only of `patches`, of the earlier version; takes time by their number.
 /// Weaknesses that the paper states: objects that are not small beside the distance; objects that are not about as
 /// large from all sides; points that are hidden where other parts are not, or the other way round.
-std::vector<double> estimated_importance(const VersionDifference& difference, std::uint32_t points);
+std::vector<double> estimated_importance(const VersionDifference& difference, std::uint32_t points,
+                                         std::span<const std::uint32_t> patches);
 
 }  // namespace exitance

@@ -4,9 +4,54 @@
 #include <utility>
 
 namespace exitance {
+namespace {
+
+/// Room for what edits bring: so that a soup is made anew once in so many edits that all together bring as much as it has.
+constexpr std::uint32_t kLeastSpare = 1024;
+
+struct Surfaces {
+  std::vector<Polygon> polygons;
+  std::vector<Role> roles;
+  std::vector<PolygonSoup::Rank> ranks;  ///< the object's number, then that in the object
+
+  PolygonSoup::Arrival arrival() const { return {polygons, roles, ranks}; }
+};
+
+Surfaces surfaces_in(const Scene& scene, EditedScene::Range range) {
+  Surfaces found;
+  for (std::uint32_t k = range.first; k < range.last; ++k) {
+    const Surface& surface = scene.surfaces[k];
+    const bool continues = k > range.first && scene.surfaces[k - 1].object == surface.object;
+    found.polygons.push_back(surface.polygon);
+    found.roles.push_back(surface.obstruction_only ? Role::sheet : Role::patch);
+    found.ranks.push_back(continues ? found.ranks.back() + 1 : PolygonSoup::Rank{surface.object} << 32);
+  }
+  return found;
+}
+
+PolygonSoup soup_of(const Scene& scene) {
+  const auto count = static_cast<std::uint32_t>(scene.surfaces.size());
+  const Surfaces all = surfaces_in(scene, {0, count});
+  return PolygonSoup(all.polygons, all.roles, all.ranks, std::max(kLeastSpare, count));
+}
+
+/// After an edit of the object in the slot; made anew where it must be.
+PolygonSoup soup_after(const PolygonSoup& before, const ObjectSlot& slot, const EditedScene& scene,
+                       std::uint32_t object) {
+  const PolygonSoup::PolygonRange gone = slot.present ? slot.polygons : PolygonSoup::PolygonRange{};
+  const Surfaces arriving = surfaces_in(scene.scene(), scene.surfaces_of(object));
+  if (auto soup = PolygonSoup::edited(before, gone, arriving.arrival())) return std::move(*soup);
+  return soup_of(scene.scene());
+}
+
+Contacts contacts_of(const PolygonSoup& soup, const PolygonSoup& before, const Contacts& contacts_before) {
+  return soup.shares_with(before) ? Contacts(contacts_before, soup) : Contacts(soup);
+}
+
+}  // namespace
 
 SceneVersion::SceneVersion(const EditedScene& scene, const MeshOptions& options)
-    : soup_(make_soup(scene.scene())),
+    : soup_(soup_of(scene.scene())),
       mesh_(make_patch_mesh(scene.scene(), soup_, options)),
       visibility_(mesh_, soup_),
       slots_(scene.scene().objects.size()),
@@ -26,7 +71,7 @@ SceneVersion::SceneVersion(const EditedScene& scene, const MeshOptions& options)
     }
     slot.patch_count = patch - slot.patch_first;
   }
-  find_facets(scene);
+  place_objects(scene, true);
   find_objects();
   index_elements();
 }
@@ -34,35 +79,29 @@ SceneVersion::SceneVersion(const EditedScene& scene, const MeshOptions& options)
 SceneVersion::SceneVersion(const SceneVersion& before, const EditedScene& scene, const MeshOptions& options,
                            std::uint32_t object)
     : serial_(before.serial_ + 1),
-      soup_(make_soup(scene.scene())),
-      visibility_(mesh_, soup_),
+      soup_(soup_after(before.soup_, before.slots_[object], scene, object)),
+      visibility_(mesh_, soup_, contacts_of(soup_, before.soup_, before.visibility_.contacts())),
       slots_(before.slots_),
       observers_([this] { return visibility_.observer(); }),
       sights_([this] { return std::make_unique<PatchSight>(mesh_, soup_, visibility_.contacts()); }) {
-  find_facets(scene);
+  const EditedScene::Range surfaces = scene.surfaces_of(object);
   slots_[object].present = scene.is_present(object);
   ++slots_[object].pose;
-  const EditedScene::Range surfaces = scene.surfaces_of(object);
-  const PatchMesh own = make_patch_mesh(scene.scene(), soup_, options, surfaces.first, surfaces.last);
+  const bool shares = soup_.shares_with(before.soup_);
+  if (shares) slots_[object].polygons = soup_.arrived();
+  place_objects(scene, !shares);
+  const PatchMesh own = make_patch_mesh(scene.scene(), soup_, options, surfaces.first, surfaces.last,
+                                        slots_[object].polygons.first);
+  object_of_patch_ = before.object_of_patch_;
   const bool fits = !slots_[object].present || (own.patches.size() == slots_[object].patch_count &&
                                                 own.elements.size() == slots_[object].element_count);
-
-  // All numbers as they were, then the pieces and points of what is there.
-  mesh_.patches = before.mesh_.patches;
-  mesh_.elements = before.mesh_.elements;
-  mesh_.points.reserve(before.mesh_.points.size());
-  mesh_.pieces.reserve(before.mesh_.pieces.size());
-  for (Patch& patch : mesh_.patches) patch.piece_first = patch.piece_count = 0;
-  for (Element& element : mesh_.elements) element.piece_first = element.piece_count = 0;
-  for (std::uint32_t k = 0; k < slots_.size(); ++k) {
-    if (k == object || !slots_[k].present) continue;
-    const std::uint32_t surface = scene.surfaces_of(k).first;
-    const ObjectSlot& old = before.slots_[k];
-    take_block(before.mesh_, old.patch_first, slots_[k].facet_first - old.facet_first, surface, slots_[k]);
-  }
+  take_others(before, object);
   if (slots_[object].present) {
     ObjectSlot& slot = slots_[object];
     if (!fits) {
+      slot.present = false;
+      find_object(object);
+      slot.present = true;
       slot.patch_first = static_cast<std::uint32_t>(mesh_.patches.size());
       slot.element_first = static_cast<std::uint32_t>(mesh_.elements.size());
       slot.patch_count = static_cast<std::uint32_t>(own.patches.size());
@@ -70,9 +109,9 @@ SceneVersion::SceneVersion(const SceneVersion& before, const EditedScene& scene,
       mesh_.patches.resize(mesh_.patches.size() + own.patches.size());
       mesh_.elements.resize(mesh_.elements.size() + own.elements.size());
     }
-    take_block(own, 0, 0, surfaces.first, slot);
+    take_block(own, 0, 0, 0, slot);
   }
-  find_objects();
+  find_object(object);
   element_index_ = before.element_index_;
   std::size_t elsewhere = 0;
   for (std::uint32_t k = 0; k < slots_.size(); ++k) {
@@ -81,16 +120,44 @@ SceneVersion::SceneVersion(const SceneVersion& before, const EditedScene& scene,
   if (4 * elsewhere > mesh_.elements.size()) index_elements();
 }
 
-/// Copies the patches of an object from a mesh in which they begin at patch_first; its facets are numbered higher by
-/// facet_offset (modulo 2^32) here than there, its surfaces begin at `surface`.
+/// All numbers as they were, then the pieces and points of what is there but the object. As long as the soup's numbers
+/// last, those of what is gone stay, too.
+void SceneVersion::take_others(const SceneVersion& before, std::uint32_t object) {
+  if (soup_.shares_with(before.soup_)) {
+    mesh_ = before.mesh_;
+    const ObjectSlot& own = before.slots_[object];
+    for (std::uint32_t p = own.patch_first; p < own.patch_first + own.patch_count; ++p)
+      mesh_.patches[p].piece_first = mesh_.patches[p].piece_count = 0;
+    for (std::uint32_t e = own.element_first; e < own.element_first + own.element_count; ++e)
+      mesh_.elements[e].piece_first = mesh_.elements[e].piece_count = 0;
+    for (std::uint32_t k = 0; k < slots_.size(); ++k) {
+      const std::uint32_t offset = slots_[k].surface_first - before.slots_[k].surface_first;
+      if (k == object || !slots_[k].present || offset == 0) continue;
+      for (std::uint32_t p = 0; p < slots_[k].patch_count; ++p) mesh_.patches[slots_[k].patch_first + p].surface += offset;
+    }
+    return;
+  }
+  mesh_.patches = before.mesh_.patches;
+  mesh_.elements = before.mesh_.elements;
+  for (Patch& patch : mesh_.patches) patch.piece_first = patch.piece_count = 0;
+  for (Element& element : mesh_.elements) element.piece_first = element.piece_count = 0;
+  for (std::uint32_t k = 0; k < slots_.size(); ++k) {
+    if (k == object || !slots_[k].present) continue;
+    const ObjectSlot& old = before.slots_[k];
+    take_block(before.mesh_, old.patch_first, slots_[k].facet_first - old.facet_first,
+               slots_[k].surface_first - old.surface_first, slots_[k]);
+  }
+}
+
+/// Copies the patches of an object from a mesh in which they begin at patch_first; its facets and surfaces are numbered
+/// higher by the offsets (modulo 2^32) here than there.
 void SceneVersion::take_block(const PatchMesh& from, std::uint32_t patch_first, std::uint32_t facet_offset,
-                              std::uint32_t surface, const ObjectSlot& slot) {
+                              std::uint32_t surface_offset, const ObjectSlot& slot) {
   if (slot.patch_count == 0) return;
-  const std::uint32_t surface_there = from.patches[patch_first].surface;
   const std::uint32_t element_there = from.patches[patch_first].element_first;
   const auto take_loop = [&](std::uint32_t first, std::uint32_t count) {
     const auto here = static_cast<std::uint32_t>(mesh_.points.size());
-    mesh_.points.insert(mesh_.points.end(), from.points.begin() + first, from.points.begin() + first + count);
+    mesh_.points.append(from.points.begin() + first, from.points.begin() + first + count);
     return here;
   };
   const auto take_pieces = [&](std::uint32_t first, std::uint32_t count) {
@@ -105,7 +172,7 @@ void SceneVersion::take_block(const PatchMesh& from, std::uint32_t patch_first, 
   };
   for (std::uint32_t p = 0; p < slot.patch_count; ++p) {
     Patch patch = from.patches[patch_first + p];
-    patch.surface = patch.surface - surface_there + surface;
+    patch.surface += surface_offset;
     patch.element_first = patch.element_first - element_there + slot.element_first;
     patch.piece_first = take_pieces(patch.piece_first, patch.piece_count);
     mesh_.patches[slot.patch_first + p] = patch;
@@ -120,27 +187,43 @@ void SceneVersion::take_block(const PatchMesh& from, std::uint32_t patch_first, 
   }
 }
 
-void SceneVersion::find_facets(const EditedScene& scene) {
+/// Where objects are in the scene and in the soup.
+void SceneVersion::place_objects(const EditedScene& scene, bool soup_is_new) {
   for (std::uint32_t object = 0; object < slots_.size(); ++object) {
+    ObjectSlot& slot = slots_[object];
     const EditedScene::Range surfaces = scene.surfaces_of(object);
-    slots_[object].facet_first = soup_.first_facet(surfaces.first);
-    slots_[object].facet_last = soup_.first_facet(surfaces.last);
+    slot.surface_first = surfaces.first;
+    if (soup_is_new) slot.polygons = {surfaces.first, surfaces.last};
+    slot.facet_first = soup_.first_facet(slot.polygons.first);
+    slot.facet_last = soup_.first_facet(slot.polygons.last);
   }
+}
+
+std::uint32_t SceneVersion::object_of_facet(std::uint32_t facet) const {
+  const auto holds = [&](const ObjectSlot& slot) {
+    return slot.present && slot.facet_first <= facet && facet < slot.facet_last;
+  };
+  const auto slot = std::ranges::find_if(slots_, holds);
+  return slot == slots_.end() ? kVoid : static_cast<std::uint32_t>(slot - slots_.begin());
 }
 
 void SceneVersion::find_objects() {
-  object_of_patch_.assign(mesh_.patches.size(), kVoid);
-  for (std::uint32_t object = 0; object < slots_.size(); ++object) {
-    const ObjectSlot& slot = slots_[object];
-    if (!slot.present) continue;
-    std::fill_n(object_of_patch_.begin() + slot.patch_first, slot.patch_count, object);
-  }
+  for (std::uint32_t object = 0; object < slots_.size(); ++object) find_object(object);
+}
+
+/// The patches' numbers are the object's, or nobody's while it is not there.
+void SceneVersion::find_object(std::uint32_t object) {
+  object_of_patch_.resize(mesh_.patches.size());
+  const ObjectSlot& slot = slots_[object];
+  for (std::uint32_t p = slot.patch_first; p < slot.patch_first + slot.patch_count; ++p)
+    object_of_patch_[p] = slot.present ? object + 1 : 0;
 }
 
 void SceneVersion::index_elements() {
-  std::vector<Box> boxes(mesh_.elements.size());
+  const PatchMesh& mesh = mesh_;
+  std::vector<Box> boxes(mesh.elements.size());
   for (std::uint32_t e = 0; e < boxes.size(); ++e) {
-    if (object_of_element(e) != kVoid) boxes[e].extend(mesh_.elements[e].sample);
+    if (object_of_element(e) != kVoid) boxes[e].extend(mesh.elements[e].sample);
   }
   element_index_ = std::make_shared<const ElementIndex>(ElementIndex{SpatialIndex(boxes), slots_});
 }

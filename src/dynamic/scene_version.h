@@ -22,7 +22,9 @@ namespace exitance {
 struct ObjectSlot {
   std::uint32_t patch_first = 0, patch_count = 0;
   std::uint32_t element_first = 0, element_count = 0;
+  std::uint32_t surface_first = 0;                ///< in the scene
   std::uint32_t facet_first = 0, facet_last = 0;  ///< in the version's soup
+  PolygonSoup::PolygonRange polygons;             ///< likewise
   std::uint64_t pose = 0;                         ///< changes with every edit of the object's geometry
   bool present = false;
 };
@@ -38,7 +40,7 @@ class SceneVersion {
 
   /// The version after an edit of the geometry of one object. Everything else keeps its elements and sample points; the
   /// object is cut anew. Where it has as many patches and elements as before they take the same numbers, else new ones
-  /// behind all others.
+  /// behind all others. Shares with `before` what it can (PolygonSoup::edited).
   SceneVersion(const SceneVersion& before, const EditedScene& scene, const MeshOptions& options, std::uint32_t object);
   SceneVersion(const SceneVersion&) = delete;
   SceneVersion& operator=(const SceneVersion&) = delete;
@@ -56,7 +58,7 @@ class SceneVersion {
   const ObjectSlot& slot(std::uint32_t object) const { return slots_[object]; }
   /// The object that a patch belongs to, or kVoid.
   std::uint32_t object_of_patch(std::uint32_t patch) const {
-    return patch < object_of_patch_.size() ? object_of_patch_[patch] : kVoid;
+    return patch < object_of_patch_.size() ? object_of_patch_[patch] - 1 : kVoid;
   }
   std::uint32_t object_of_element(std::uint32_t element) const {
     return object_of_patch(mesh_.elements[element].patch);
@@ -64,6 +66,9 @@ class SceneVersion {
   bool has_element(std::uint32_t element) const {
     return element < elements() && object_of_element(element) != kVoid;
   }
+
+  /// The object that a facet of the soup belongs to, or kVoid. Takes time by the number of objects.
+  std::uint32_t object_of_facet(std::uint32_t facet) const;
 
   /// Objects whose geometry is not the same in both versions, ascending.
   std::vector<std::uint32_t> changed_since(const SceneVersion& other) const;
@@ -84,10 +89,12 @@ class SceneVersion {
   PointRow row(std::uint32_t element) const;
 
  private:
-  void take_block(const PatchMesh& from, std::uint32_t patch_first, std::uint32_t facet_offset, std::uint32_t surface,
-                  const ObjectSlot& slot);
-  void find_facets(const EditedScene& scene);
+  void take_block(const PatchMesh& from, std::uint32_t patch_first, std::uint32_t facet_offset,
+                  std::uint32_t surface_offset, const ObjectSlot& slot);
+  void take_others(const SceneVersion& before, std::uint32_t object);
+  void place_objects(const EditedScene& scene, bool soup_is_new);
   void find_objects();
+  void find_object(std::uint32_t object);
   void index_elements();
 
   /// Sample points as they were when it was made. Those of objects that have changed since are not used.
@@ -106,7 +113,7 @@ class SceneVersion {
   PatchMesh mesh_;
   ExactVisibility visibility_;
   std::vector<ObjectSlot> slots_;
-  std::vector<std::uint32_t> object_of_patch_;
+  SharedRows<std::uint32_t> object_of_patch_;  ///< + 1; 0: nobody's
   std::shared_ptr<const ElementIndex> element_index_;  ///< shared by versions that follow each other
   mutable tbb::enumerable_thread_specific<std::unique_ptr<Observer>> observers_;
   mutable tbb::enumerable_thread_specific<std::unique_ptr<PatchSight>> sights_;

@@ -46,8 +46,11 @@ std::vector<std::string> find_trespass(const EditedScene& scene, const SceneVers
     return box;
   };
   const std::string& name = scene.scene().objects[object].name;
+  if (slot.facet_first == slot.facet_last) return said;  // nothing of it has an area
   Box own, others;
-  for (std::uint32_t f = 0; f < facets; ++f) (is_own(f) ? own : others).extend(box_of(f));
+  for (std::uint32_t f = 0; f < facets; ++f) {
+    if (soup.is_present(f)) (is_own(f) ? own : others).extend(box_of(f));
+  }
   if (!own.overlaps(others)) {
     said.push_back(fmt::format("object '{}' has left the scene: nothing of it is between the other objects", name));
     return said;
@@ -60,7 +63,7 @@ std::vector<std::string> find_trespass(const EditedScene& scene, const SceneVers
     soup.index().find(box_of(f), found);
     const auto look = [&](std::uint32_t other) {
       if (is_own(other)) return;
-      const std::uint32_t of = scene.scene().surfaces[soup.facets()[other].polygon].object;
+      const std::uint32_t of = version.object_of_facet(other);
       if (!crossed.contains(of) && cross_each_other(soup, soup.facets()[f], soup.facets()[other], counts))
         crossed.insert(of);
     };

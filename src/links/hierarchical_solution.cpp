@@ -47,7 +47,7 @@ PatchMesh mesh_of(const LinkedRadiosity& links) {
   PatchMesh mesh;
   const auto add_piece = [&](const Node& node) {
     PatchPiece piece{node.facet, static_cast<std::uint32_t>(mesh.points.size()), node.corners, node.area};
-    mesh.points.insert(mesh.points.end(), node.loop().begin(), node.loop().end());
+    mesh.points.append(node.loop().begin(), node.loop().end());
     mesh.pieces.push_back(piece);
     return static_cast<std::uint32_t>(mesh.pieces.size() - 1);
   };
@@ -82,7 +82,10 @@ PatchMesh mesh_of(const LinkedRadiosity& links) {
     const Node& node = tree.node(tree.root(patch.piece_first).node_first);
     patch.piece_first = add_piece(node);
     patch.piece_count = 1;
-    if (node.whole) mesh.pieces[patch.piece_first].loop_count = 0;
+    if (!node.whole) continue;
+    PatchPiece whole = mesh.pieces[patch.piece_first];
+    whole.loop_count = 0;
+    mesh.pieces.set(patch.piece_first, whole);
   }
   return mesh;
 }

@@ -80,7 +80,7 @@ PatchTree::PatchTree(const EditedScene& scene, const PolygonSoup& soup, const Tr
 std::vector<Node> PatchTree::root_nodes(const EditedScene& scene, const PolygonSoup& soup, std::uint32_t object,
                                         std::vector<std::uint32_t>& surfaces) const {
   const EditedScene::Range range = scene.surfaces_of(object);
-  const PatchMesh mesh = make_patch_mesh(scene.scene(), soup, options_.mesh, range.first, range.last);
+  const PatchMesh mesh = make_patch_mesh(scene.scene(), soup, options_.mesh, range.first, range.last, range.first);
   std::vector<Node> roots;
   for (const Patch& patch : mesh.patches) {
     for (const PatchPiece& piece : mesh.pieces_of(patch)) {

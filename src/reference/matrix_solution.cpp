@@ -15,12 +15,14 @@ constexpr double kTolerance = 1e-12;
 
 /// Every piece with its loop, as a record wants it.
 PatchMesh with_loops(PatchMesh mesh, const PolygonSoup& soup) {
-  for (PatchPiece& piece : mesh.pieces) {
+  for (std::size_t k = 0; k < mesh.pieces.size(); ++k) {
+    PatchPiece piece = mesh.pieces[k];
     if (piece.loop_count > 0) continue;
     const auto corners = soup.corners(soup.facets()[piece.facet]);
     piece.loop_first = static_cast<std::uint32_t>(mesh.points.size());
     piece.loop_count = static_cast<std::uint32_t>(corners.size());
     for (const Corner& c : corners) mesh.points.push_back(c.at);
+    mesh.pieces.set(k, piece);
   }
   return mesh;
 }

@@ -176,7 +176,7 @@ void RefinedMesh::add_elements(const Cell& cell) {
   const auto add_piece = [&](const AreaCell& shape) {
     const auto first = static_cast<std::uint32_t>(mesh_.points.size());
     const auto loop = shape.loop();
-    mesh_.points.insert(mesh_.points.end(), loop.begin(), loop.end());
+    mesh_.points.append(loop.begin(), loop.end());
     mesh_.pieces.push_back({cell.facet, first, static_cast<std::uint32_t>(loop.size()), shape.area()});
     return static_cast<std::uint32_t>(mesh_.pieces.size() - 1);
   };

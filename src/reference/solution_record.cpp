@@ -162,7 +162,8 @@ SolutionRecord read_solution_archive(const std::filesystem::path& path) {
                         .bands = number(file, "bands"),
                         .degree = number(file, "degree"),
                         .manifest = file.text("manifest")};
-  record.mesh.points = points_of(file, "points");
+  const std::vector<Vec3> points = points_of(file, "points");
+  record.mesh.points.append(points.begin(), points.end());
   const std::vector<std::uint32_t> surface = file.uint32s("patch_surface"), facet = file.uint32s("patch_facet"),
                                    elements = file.uint32s("patch_elements"), corners = file.uint32s("piece_corners");
   const std::vector<Vec3> normal = points_of(file, "patch_normal");

@@ -247,8 +247,9 @@ class SquareGrid {
 
 class Mesher {
  public:
-  Mesher(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options)
-      : scene_(scene), soup_(soup), samples_(soup), size_(options.patch_size), small_(options.small_patch), elements_per_edge_(options.elements_per_edge),
+  /// polygon_offset: what to add (modulo 2^32) to the number of a surface for that of its polygon.
+  Mesher(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options, std::uint32_t polygon_offset = 0)
+      : scene_(scene), soup_(soup), polygon_offset_(polygon_offset), samples_(soup), size_(options.patch_size), small_(options.small_patch), elements_per_edge_(options.elements_per_edge),
         per_edge_(options.elements_per_edge) {
     if (!(size_ >= 0) || std::isinf(size_)) throw std::invalid_argument("the patch size must be a finite number ≥ 0");
     if (!(small_ >= 0)) throw std::invalid_argument("the area of small patches must be a number ≥ 0");
@@ -336,17 +337,18 @@ class Mesher {
 
   Shape begin(std::uint32_t surface) {
     facets_.clear();
-    first_facet_ = soup_.first_facet(surface);
-    for (std::uint32_t f = first_facet_; f < soup_.first_facet(surface + 1); ++f) {
+    const std::uint32_t polygon = surface + polygon_offset_;
+    first_facet_ = soup_.first_facet(polygon);
+    for (std::uint32_t f = first_facet_; f < soup_.first_facet(polygon + 1); ++f) {
       Loop& loop = facets_.emplace_back();
       for (const Corner& c : soup_.corners(soup_.facets()[f])) loop.push_back(soup_.vertices()[c.vertex]);
     }
     surface_ = surface;
     per_edge_ = elements_per_edge_;
     if (facets_.empty()) return Shape::none;
-    const Polygon& polygon = scene_.surfaces[surface].polygon;
-    const Shape shape = shape_of(polygon);
-    if (small_ > 0 && (shape == Shape::needle || area_of_patch(shape, polygon) <= small_)) per_edge_ = 1;
+    const Polygon& outline = scene_.surfaces[surface].polygon;
+    const Shape shape = shape_of(outline);
+    if (small_ > 0 && (shape == Shape::needle || area_of_patch(shape, outline) <= small_)) per_edge_ = 1;
     return shape;
   }
 
@@ -396,7 +398,7 @@ class Mesher {
 
   std::uint32_t add_loop(const Loop& loop) {
     const auto first = static_cast<std::uint32_t>(mesh_.points.size());
-    mesh_.points.insert(mesh_.points.end(), loop.begin(), loop.end());
+    mesh_.points.append(loop.begin(), loop.end());
     return first;
   }
 
@@ -600,6 +602,7 @@ class Mesher {
 
   const Scene& scene_;
   const PolygonSoup& soup_;
+  std::uint32_t polygon_offset_;
   SampleSite samples_;
   double size_, small_;
   std::uint32_t elements_per_edge_;
@@ -633,12 +636,12 @@ PolygonSoup make_soup(const Scene& scene) {
 }
 
 PatchMesh make_patch_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options) {
-  return make_patch_mesh(scene, soup, options, 0, static_cast<std::uint32_t>(scene.surfaces.size()));
+  return make_patch_mesh(scene, soup, options, 0, static_cast<std::uint32_t>(scene.surfaces.size()), 0);
 }
 
 PatchMesh make_patch_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options, std::uint32_t first,
-                          std::uint32_t last) {
-  Mesher mesher(scene, soup, options);
+                          std::uint32_t last, std::uint32_t polygon) {
+  Mesher mesher(scene, soup, options, polygon - first);
   refuse_if_too_large(scene, mesher, options, first, last);
   for (std::uint32_t k = first; k < last; ++k)
     if (!scene.surfaces[k].obstruction_only) mesher.cut(k);

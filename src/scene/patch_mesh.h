@@ -9,6 +9,7 @@
 #include "geometry/facets.h"
 #include "geometry/polygon_soup.h"
 #include "src/scene/scene.h"
+#include "src/scene/shared_rows.h"
 
 namespace exitance {
 
@@ -43,10 +44,10 @@ struct Element {
 };
 
 struct PatchMesh {
-  std::vector<Vec3> points;
-  std::vector<PatchPiece> pieces;
-  std::vector<Patch> patches;
-  std::vector<Element> elements;
+  SharedList<Vec3> points;
+  SharedList<PatchPiece> pieces;
+  SharedRows<Patch> patches;
+  SharedRows<Element> elements;
 
   std::span<const Vec3> loop(const PatchPiece& p) const { return {points.data() + p.loop_first, p.loop_count}; }
   std::span<const Vec3> loop(const Element& e) const { return {points.data() + e.loop_first, e.loop_count}; }
@@ -80,9 +81,9 @@ PolygonSoup make_soup(const Scene& scene);
 /// throws, before anything is cut.
 PatchMesh make_patch_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options);
 
-/// The same of the surfaces `first` … `last` − 1 only.
+/// The same of the surfaces `first` … `last` − 1 only, which are the soup's polygons from `polygon` on.
 PatchMesh make_patch_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options, std::uint32_t first,
-                          std::uint32_t last);
+                          std::uint32_t last, std::uint32_t polygon);
 
 /// Throws LimitError, with the numbers, when the mesh would have more points than 32 bits count or would take more
 /// memory, about, than the options allow.

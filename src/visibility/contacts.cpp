@@ -26,58 +26,66 @@ bool lies_within(const PolygonSoup& soup, std::uint32_t facet, const Vec3& point
 }
 
 Contacts::Contacts(const PolygonSoup& soup)
-    : soup_(&soup),
-      near_(kNear * soup.extent()),
-      touching_(soup.facets().size()),
-      burying_(soup.facets().size()),
-      overlying_(soup.facets().size()) {
-  const auto facets = soup.facets();
-  const auto count = static_cast<std::uint32_t>(facets.size());
-  const Vec3 margin{near_, near_, near_};
-  std::vector<std::uint32_t> items, near;
-  for (std::uint32_t f = 0; f < count; ++f) {
-    const Plane& plane = facets[f].plane;
-    const auto coplanar = soup.coplanar(f);
-    for (const std::uint32_t t : coplanar) {
-      if (!soup.covers(t, f)) continue;
-      const bool of_solid = soup.role(facets[t].polygon) != Role::sheet && face_against(facets[t].plane, plane);
-      (of_solid ? burying_ : overlying_)[f].push_back(t);
-    }
-    Box around;
-    for (const Corner& c : soup.corners(facets[f])) {
-      around.extend(c.at - margin);
-      around.extend(c.at + margin);
-    }
-    items.clear();
-    near.clear();
-    soup.index().find(around, items);
-    for (const std::uint32_t item : items) {
-      if (item < count) {
-        near.push_back(item);
-      } else {
-        const auto& of_shell = soup.shells()[item - count].facets;
-        near.insert(near.end(), of_shell.begin(), of_shell.end());
-      }
-    }
-    std::ranges::sort(near);
-    for (const std::uint32_t t : near) {
-      if (face_against(facets[t].plane, plane) && reaches(t, plane) && !std::ranges::binary_search(coplanar, t) &&
-          !are_sides_of_a_sheet(facets[t].polygon, facets[f].polygon))
-        touching_[f].push_back(t);
-    }
+    : soup_(&soup), near_(kNear * soup.extent()), lying_on_(soup.facets().size()) {
+  const auto set = [&](std::uint32_t f, LyingOn found) {
+    if (!found.touching.empty() || !found.burying.empty() || !found.overlying.empty())
+      lying_on_.set(f, std::move(found));
+  };
+  for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
+    if (soup.is_present(f)) set(f, find_lying_on(f));
   }
 }
 
+Contacts::Contacts(const Contacts& before, const PolygonSoup& soup)
+    : soup_(&soup), near_(before.near_), lying_on_(before.lying_on_) {
+  for (const std::uint32_t f : soup.touched()) lying_on_.set(f, find_lying_on(f));
+}
+
+Contacts::LyingOn Contacts::find_lying_on(std::uint32_t f) const {
+  LyingOn found;
+  const auto facets = soup_->facets();
+  const Plane& plane = facets[f].plane;
+  const auto coplanar = soup_->coplanar(f);
+  for (const std::uint32_t t : coplanar) {
+    if (!soup_->covers(t, f)) continue;
+    const bool of_solid = soup_->role(facets[t].polygon) != Role::sheet && face_against(facets[t].plane, plane);
+    (of_solid ? found.burying : found.overlying).push_back(t);
+  }
+  const Vec3 margin{near_, near_, near_};
+  Box around;
+  for (const Corner& c : soup_->corners(facets[f])) {
+    around.extend(c.at - margin);
+    around.extend(c.at + margin);
+  }
+  std::vector<std::uint32_t> items, near;
+  soup_->index().find(around, items);
+  for (const std::uint32_t item : items) {
+    if (item < facets.size()) {
+      near.push_back(item);
+    } else {
+      const auto& of_shell = soup_->shells()[item - facets.size()].facets;
+      near.insert(near.end(), of_shell.begin(), of_shell.end());
+    }
+  }
+  std::ranges::sort(near);
+  for (const std::uint32_t t : near) {
+    if (face_against(facets[t].plane, plane) && reaches(t, plane) && !std::ranges::binary_search(coplanar, t) &&
+        !are_sides_of_a_sheet(facets[t].polygon, facets[f].polygon))
+      found.touching.push_back(t);
+  }
+  return found;
+}
+
 bool Contacts::touched(std::uint32_t facet, const Vec3& point) const {
-  return any_at(touching_[facet], point, near_);
+  return any_at(lying_on_[facet].touching, point, near_);
 }
 
 bool Contacts::buried(std::uint32_t facet, const Vec3& point) const {
-  return any_at(burying_[facet], point, kOfComputed * near_) || any_at(touching_[facet], point, kOfComputed * near_);
+  return any_at(lying_on_[facet].burying, point, kOfComputed * near_) || any_at(lying_on_[facet].touching, point, kOfComputed * near_);
 }
 
 bool Contacts::overlaid(std::uint32_t facet, const Vec3& point) const {
-  return any_at(overlying_[facet], point, kOfComputed * near_);
+  return any_at(lying_on_[facet].overlying, point, kOfComputed * near_);
 }
 
 Contacts::Pair Contacts::pair(std::uint32_t i, std::uint32_t j) const {

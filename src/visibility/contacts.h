@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/paged.h"
 #include "geometry/polygon_soup.h"
 
 namespace exitance {
@@ -21,6 +22,9 @@ class Contacts {
   /// Keeps a reference to the soup.
   explicit Contacts(const PolygonSoup& soup);
 
+  /// Of a soup that an edit made from that of `before`: takes time by what changed.
+  Contacts(const Contacts& before, const PolygonSoup& soup);
+
   /// Whether something that faces the facet lies against it at this point of it up to rounding, but not exactly: within
   /// 2^-49 of the scene's extent, as contacts of turned solids do. The corners of patches are rounded to some 2^-52 of
   /// it; seen from so near, patches would leave gaps and overlap. On an edge of what lies there: yes.
@@ -30,7 +34,7 @@ class Contacts {
   bool covered(std::uint32_t facet, const Vec3& point) const { return buried(facet, point) || overlaid(facet, point); }
   /// Whether something does with open space before it: a later surface that faces the same way, or a sheet.
   bool overlaid(std::uint32_t facet, const Vec3& point) const;
-  bool may_be_overlaid(std::uint32_t facet) const { return !overlying_[facet].empty(); }
+  bool may_be_overlaid(std::uint32_t facet) const { return !lying_on_[facet].overlying.empty(); }
 
   /// The contacts of two facets, between points of which nothing else stands.
   class Pair {
@@ -51,15 +55,22 @@ class Contacts {
 
  private:
   bool buried(std::uint32_t facet, const Vec3& point) const;
-  std::size_t burying_count(std::uint32_t facet) const { return burying_[facet].size() + touching_[facet].size(); }
+  std::size_t burying_count(std::uint32_t facet) const {
+    return lying_on_[facet].burying.size() + lying_on_[facet].touching.size();
+  }
   bool any_at(std::span<const std::uint32_t> facets, const Vec3& point, double near) const;
   bool are_sides_of_a_sheet(std::uint32_t p, std::uint32_t q) const;  ///< polygons
   bool reaches(std::uint32_t facet, const Plane& plane) const;
 
+  /// The facets that lie on one: against it up to rounding; exactly, solids; exactly, others.
+  struct LyingOn {
+    std::vector<std::uint32_t> touching, burying, overlying;
+  };
+  LyingOn find_lying_on(std::uint32_t facet) const;
+
   const PolygonSoup* soup_;
   double near_;  ///< [m]
-  /// The facets that lie on each facet: against it up to rounding; exactly, solids; exactly, others.
-  std::vector<std::vector<std::uint32_t>> touching_, burying_, overlying_;
+  Paged<LyingOn> lying_on_;
 };
 
 }  // namespace exitance

@@ -1,6 +1,8 @@
 #pragma once
 // Exact visibility of a mesh's patches from its sample points.
 
+#include <utility>
+
 #include "geometry/polygon_soup.h"
 #include "src/visibility/contacts.h"
 #include "src/visibility/visibility.h"
@@ -14,7 +16,10 @@ inline constexpr double kPointTolerance = 1e-11;
 class ExactVisibility final : public MeshVisibility {
  public:
   /// Keeps references. The mesh must be of the soup's scene (make_patch_mesh).
-  ExactVisibility(const PatchMesh& mesh, const PolygonSoup& soup) : mesh_(mesh), soup_(soup), contacts_(soup) {}
+  ExactVisibility(const PatchMesh& mesh, const PolygonSoup& soup) : ExactVisibility(mesh, soup, Contacts(soup)) {}
+  /// The same with the soup's contacts, where they are known.
+  ExactVisibility(const PatchMesh& mesh, const PolygonSoup& soup, Contacts contacts)
+      : mesh_(mesh), soup_(soup), contacts_(std::move(contacts)) {}
 
   const PatchMesh& mesh() const override { return mesh_; }
   std::unique_ptr<Observer> observer() const override;

@@ -255,5 +255,15 @@ TEST(Trespass, SaysWhatNoObjectCanDo) {
   EXPECT_THAT(said({0.5, -0.5, 0}), ElementsAre(HasSubstr("passes through 'L'")));
 }
 
+TEST(Trespass, SaysNothingOfWhatHasNoArea) {
+  EditedScene scene(test_room());
+  Edit edit{Operation::reshape, 1, {}, {}, {}};
+  Surface line;
+  line.polygon.outer = {{1, 1, 1}, {2, 1, 1}, {1.5, 1, 1}};
+  edit.shape = {line};
+  scene.apply(edit);
+  EXPECT_THAT(find_trespass(scene, SceneVersion(scene, {1.5, 1}), 1), IsEmpty());
+}
+
 }  // namespace
 }  // namespace exitance

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <memory>
@@ -124,7 +125,7 @@ TEST(ReferenceSolutionTest, GoesOnFromItsCheckpointWithTheSameBits) {
   EXPECT_EQ(resumed.record.B, whole.record.B);
   EXPECT_EQ(resumed.record.H, whole.record.H);
   EXPECT_EQ(resumed.record.error.total, whole.record.error.total);
-  EXPECT_EQ(resumed.record.mesh.points, whole.record.mesh.points);
+  EXPECT_TRUE(std::ranges::equal(resumed.record.mesh.points, whole.record.mesh.points));
   EXPECT_GT(resumed.levels[0].resumed_rows, 0u);
 }
 
