@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "src/form_factor/outline.h"
 #include "src/form_factor/pole.h"
 
 namespace exitance {
@@ -283,6 +284,10 @@ std::optional<std::uint32_t> ObstructedExchange::find_event(Viewpoint& view, Sig
     return sight(view, x).outline != 0 ? view.seen_edges() : std::vector<SeenEdge>{};
   };
   const std::vector<SeenEdge> from_here = edges_from(here.point), from_there = edges_from(there.point);
+  if (same_lines(from_here, from_there)) {
+    same_.emplace(std::max(here.outline, there.outline), std::min(here.outline, there.outline));
+    return {};
+  }
   for (const EdgeEvent& event : events_between(from_here, from_there)) {
     found_.push_back(event);
     const auto e = static_cast<std::uint32_t>(events_.size() + found_.size() - 1);

@@ -140,5 +140,18 @@ TEST(CornerPole, BoundsWhatRulesMissBesideACorner) {
   }
 }
 
+/// A triangle as a quadrilateral whose second corner is its third, too.
+TEST(CornerPole, OfACellWithTwoCornersInOnePoint) {
+  const SeenEdge e = edge(1, {-0.01, 0, 0}, {-0.3, 0.1, 1});
+  const Vec3 x{0.5, 0.3, 0};
+  SeenEdge seen = e;
+  seen.from = (1 / norm(e.a - x)) * (e.a - x);
+  seen.to = (1 / norm(e.b - x)) * (e.b - x);
+  const auto error = [&](const AreaCell& cell) { return corner_poles(std::array{seen}, x, {}, cell, 4).error; };
+  const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
+  EXPECT_GT(error({{a, b, b, c}, 4}), 0);
+  EXPECT_NEAR(error({{a, b, b, c}, 4}), error({{b, c, a, a}, 4}), 1e-12);
+}
+
 }  // namespace
 }  // namespace exitance
