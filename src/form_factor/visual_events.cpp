@@ -46,6 +46,15 @@ Outline outline_of_item(const PolygonSoup& soup, std::uint32_t item) {
   return outline;
 }
 
+Outline outline_of_source(const PolygonSoup& soup, const Source& source) {
+  Outline outline;
+  outline.vertices = corners_of(soup, source);
+  for (std::size_t k = 0; k < outline.vertices.size(); ++k) {
+    outline.edges.push_back({outline.vertices[k], outline.vertices[(k + 1) % outline.vertices.size()]});
+  }
+  return outline;
+}
+
 class EventCollector {
  public:
   using Way = EventReach::Way;
@@ -206,6 +215,16 @@ std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& piece) {
   return corners;
 }
 
+std::vector<SeenEdge> edges_of(const PolygonSoup& soup, const Source& source, std::span<const std::uint32_t> items) {
+  std::vector<SeenEdge> edges;
+  const auto add = [&](const Outline& outline) {
+    for (const Edge& e : outline.edges) edges.push_back({0, e.from, e.to, {}, {}});
+  };
+  add(outline_of_source(soup, source));
+  for (const std::uint32_t item : items) add(outline_of_item(soup, item));
+  return edges;
+}
+
 std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& receiver, const Source& source,
                                        std::span<const std::uint32_t> items) {
   EventCollector events(soup, receiver, source, items);
@@ -213,11 +232,7 @@ std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& re
   for (const std::uint32_t t : soup.coplanar(receiver.facet)) {
     if (soup.covers(t, receiver.facet)) events.contact(t);
   }
-  Outline of_source;
-  of_source.vertices = corners_of(soup, source);
-  for (std::size_t k = 0; k < of_source.vertices.size(); ++k) {
-    of_source.edges.push_back({of_source.vertices[k], of_source.vertices[(k + 1) % of_source.vertices.size()]});
-  }
+  const Outline of_source = outline_of_source(soup, source);
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
   std::vector<Outline> between;
   std::size_t vertices = 0, edges = 0;

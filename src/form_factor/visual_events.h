@@ -25,6 +25,9 @@ struct VisualEvent {
 /// The corners of a piece of a facet.
 std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& piece);
 
+/// The edges of a source and of what stands between.
+std::vector<SeenEdge> edges_of(const PolygonSoup& soup, const Source& source, std::span<const std::uint32_t> items);
+
 /// Events on the receiver of a source and of what stands between them, items of the soup's index: planes of the
 /// surfaces themselves, contacts in the receiver's plane, a vertex of the one against an edge of the other, and
 /// occluders against each other; each stretch of a line once, and only where a line of sight to the source shows it
