@@ -39,7 +39,7 @@ std::uint64_t id_of(const ViewPlane& side) {
 }
 
 /// [rad] Shorter stretches of edges come and go by rounding.
-constexpr double kShortest = 1e-9;
+constexpr double kShortest = 1e-10;
 
 /// Whether an edge is seen along the horizon, where which of the two bounds is a matter of rounding.
 template <class Real>

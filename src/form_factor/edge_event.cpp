@@ -1,10 +1,24 @@
 #include "src/form_factor/edge_event.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace exitance {
 namespace {
+
+/// Odd, so that products tell.
+std::uint64_t id_of(const Vec3& v) {
+  std::uint64_t id = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    id = 0x9e3779b97f4a7c15u * (id ^ (id >> 29)) + std::bit_cast<std::uint64_t>(v[axis] + 0.0);
+  return 0xbf58476d1ce4e5b9u * (id ^ (id >> 32)) | 1;
+}
+
+/// Unit vectors that differ by no more are one direction.
+constexpr double kTouching = 1e-9;
+/// So far behind a hidden event, as a share of the side that it crosses, its effect is looked for.
+constexpr double kBeyond = 1e-4;
 
 double determinant(const Vec3& a, const Vec3& b, const Vec3& c) {
   return dot(a, cross(b, c));
@@ -14,12 +28,9 @@ double determinant(const Vec3& a, const Vec3& b, const Vec3& c) {
 struct Parabola {
   double a = 0, b = 0, c = 0;
 
-  Parabola(const EdgeEvent& event, const Vec3& p, const Vec3& q) {
-    const double f0 = event.at(p), f1 = event.at(p + 0.5 * (q - p)), f2 = event.at(q);
-    a = 2 * (f0 - 2 * f1 + f2);
-    b = -3 * f0 + 4 * f1 - f2;
-    c = f0;
-  }
+  Parabola(double f0, double f1, double f2) : a(2 * (f0 - 2 * f1 + f2)), b(-3 * f0 + 4 * f1 - f2), c(f0) {}
+  Parabola(const EdgeEvent& event, const Vec3& p, const Vec3& q)
+      : Parabola(event.at(p), event.at(p + 0.5 * (q - p)), event.at(q)) {}
   /// Real roots, at most two; ascending.
   std::vector<double> roots() const {
     const double root = b * b - 4 * a * c;
@@ -129,7 +140,7 @@ std::vector<AreaCell> cut_beside(const AreaCell& cell, const EdgeEvent& event) {
 EdgeEvent::EdgeEvent(std::span<const SeenEdge, 3> edges) {
   for (std::size_t k = 0; k < 3; ++k) {
     line_[k] = {edges[k].a, edges[k].b};
-    id_ += edges[k].id;
+    id_ += id_of(edges[k].a) * id_of(edges[k].b);
   }
   for (std::size_t k = 0; k < 3 && !plane_; ++k) {
     const auto &one = line_[k], &other = line_[(k + 1) % 3], &third = line_[(k + 2) % 3];
@@ -199,6 +210,70 @@ std::vector<EdgeEvent> events_between(std::span<const SeenEdge> here, std::span<
     for (std::size_t j = 1; j < k; ++j) {
       for (std::size_t i = 0; i < j; ++i) {
         events.emplace_back(std::array{*near[i].edge, *near[j].edge, *near[k].edge});
+      }
+    }
+  }
+  return events;
+}
+
+std::vector<HiddenEvent> hidden_events(std::span<const SeenEdge> outline, std::span<const SeenEdge> edges,
+                                       const Vec3& x, const AreaCell& cell) {
+  const auto n = static_cast<std::size_t>(cell.corners);
+  const auto on_side = [&](std::size_t side, double u) {
+    if (side == 0) return first_side(cell, u).at;
+    if (side == 2 && n == 4) return opposite_side(cell, 1 - u).at;
+    return cell.corner[side] + u * (cell.corner[(side + 1) % n] - cell.corner[side]);
+  };
+  // Corners, after each the middle of its side; at last x.
+  std::array<Vec3, 9> places;
+  Vec3 middle;
+  for (std::size_t k = 0; k < n; ++k) {
+    places[2 * k] = cell.corner[k];
+    places[2 * k + 1] = on_side(k, 0.5);
+    middle = middle + (1.0 / static_cast<double>(n)) * places[2 * k + 1];
+  }
+  places.back() = x;
+  using Vectors = std::array<Vec3, 9>;  // at each place
+  const auto normals_of = [&](const SeenEdge& e) {
+    Vectors normals;
+    for (std::size_t i = 0; i < places.size(); ++i) normals[i] = cross(e.a - places[i], e.b - places[i]);
+    return normals;
+  };
+  const auto meet = [](const SeenEdge& e, const SeenEdge& g) {
+    return e.a == g.a || e.a == g.b || e.b == g.a || e.b == g.b;
+  };
+  std::vector<Vectors> of_edges;
+  of_edges.reserve(edges.size());
+  for (const SeenEdge& k : edges) of_edges.push_back(normals_of(k));
+  std::vector<HiddenEvent> events;
+  for (const SeenEdge& e : outline) {
+    const Vectors of_e = normals_of(e);
+    for (const SeenEdge& g : outline) {
+      if (e.id == g.id || norm(e.to - g.from) > kTouching || meet(e, g)) continue;
+      const Vectors of_g = normals_of(g);
+      Vectors crossing;
+      for (std::size_t i = 0; i < places.size(); ++i) crossing[i] = cross(of_e[i], of_g[i]);
+      for (std::size_t k = 0; k < edges.size(); ++k) {
+        if (meet(edges[k], e) || meet(edges[k], g)) continue;
+        const auto value = [&](std::size_t i) { return dot(crossing[i], of_edges[k][i]); };
+        const double here = value(8);
+        for (std::size_t side = 0; side < n; ++side) {
+          const double f0 = here * value(2 * side), f1 = here * value(2 * side + 1),
+                       f2 = here * value((2 * side + 2) % (2 * n));
+          if (f0 > 0 && f2 > 0 && 4 * f1 >= f0 + f2) continue;
+          for (const double u : Parabola(f0, f1, f2).roots()) {
+            if (!(u > kBeyond && u < 1 - kBeyond)) continue;
+            const Vec3 at = on_side(side, u), d = cross(cross(e.a - at, e.b - at), cross(g.a - at, g.b - at)),
+                       to_a = edges[k].a - at, to_b = edges[k].b - at, normal = cross(to_a, to_b);
+            // Does the edge reach to where both cross?
+            const double sign = dot(d, e.to) < 0 ? -1 : 1;
+            if (sign * dot(cross(to_a, d), normal) < 0 || sign * dot(cross(d, to_b), normal) < 0) continue;
+            const double slope = -3 * f0 + 4 * f1 - f2 + 4 * u * (f0 - 2 * f1 + f2);
+            const Vec3 beyond = on_side(side, std::clamp(u - std::copysign(kBeyond, slope), 0.0, 1.0));
+            events.push_back({EdgeEvent(std::array{e, g, edges[k]}), beyond + 0.1 * kBeyond * (middle - beyond)});
+            break;
+          }
+        }
       }
     }
   }

@@ -37,6 +37,17 @@ class EdgeEvent {
 /// likeliest first.
 std::vector<EdgeEvent> events_between(std::span<const SeenEdge> here, std::span<const SeenEdge> there);
 
+/// An event that a rule's points do not show, because all of them lie on one side of it; `beyond` lies on the other.
+struct HiddenEvent {
+  EdgeEvent event;
+  Vec3 beyond;
+};
+
+/// Events that may happen within a cell although its points see one and the same outline, as seen from one of them, x:
+/// where another edge comes to where two of the outline's cross. `edges`: all that may. Found along the cell's sides.
+std::vector<HiddenEvent> hidden_events(std::span<const SeenEdge> outline, std::span<const SeenEdge> edges,
+                                       const Vec3& x, const AreaCell& cell);
+
 /// Cuts a cell along an event; the pieces next to it have it as a side. Nothing where the event does not cross the cell
 /// from one side to another in one arc, which is flat enough for a rule, or, of a bent cell, not beside the bent sides.
 std::vector<AreaCell> cut(const AreaCell& cell, const EdgeEvent& event);

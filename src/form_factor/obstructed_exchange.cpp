@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "src/form_factor/outline.h"
 #include "src/form_factor/pole.h"
 
 namespace exitance {
@@ -57,6 +58,7 @@ ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& re
       most_(most),
       contact_(soup, receiver, source, items) {
   events_ = visual_events(soup, receiver, source, items);
+  edges_ = edges_of(soup, source, items);
   const std::vector<Vec3> loop = corners_of(soup, receiver);
   find_contacts();
   std::vector<AreaCell> shapes;
@@ -211,8 +213,8 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
   }
   // Rounding: of each weight and product, and of the sum.
   cell.point_error += (16 + static_cast<double>(scratch_.size())) * kRoundoff * cell.integral;
-  // Corners and points are rounded, too. That so far outside of a cell, or away from where a point should be, no more is
-  // seen than `greatest` within is an estimate: nothing proves it.
+  // Corners and points are rounded, too. That so far outside of a cell, or away from where a point should be, no more
+  // is seen than `greatest` within is an estimate: nothing proves it.
   cell.point_error += kRoundedCorners * kRoundoff * extent_of(cell.shape) * perimeter_of(cell.shape) * greatest;
   const Truncation truncation = truncation_of(weighted_, cell.order);
   // The rule before erred by what the two differ; this one errs less, unless they agree by chance.
@@ -245,9 +247,27 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
       cell.error += poles.error;
     }
   }
+  if (order > kScoutOrder && !cell.looked && compare && !cell.mixed && outline != 0) {
+    cell.looked = true;
+    find_hidden_events(view, cell, outline, scratch_.back().point);
+  }
   if (cell.mixed) cell.error = std::max(cell.error, truncation.last + kMixed * (greatest - least) * area);
   if (cell.mixed && greatest == 0) cell.error = kUnnoticed * most_ * area;
   if (!cell.uncut.empty()) cell.error += kUnnoticed * most_ * area;
+}
+
+/// Looks for events that happen in a cell but not between its points, from one of which the outline was seen last.
+void ObstructedExchange::find_hidden_events(Viewpoint& view, Cell& cell, std::uint64_t outline, const Vec3& from) {
+  const std::vector<SeenEdge> edges = view.seen_edges();
+  for (const HiddenEvent& hidden : hidden_events(edges, edges_, from, cell.shape)) {
+    const Sighting beyond = sight(view, hidden.beyond);
+    if (beyond.outline == outline) continue;
+    cell.mixed = true;
+    const auto known = std::ranges::find(found_, hidden.event.id(), &EdgeEvent::id);
+    cell.found.push_back(static_cast<std::uint32_t>(events_.size() + static_cast<std::size_t>(known - found_.begin())));
+    if (known == found_.end()) found_.push_back(hidden.event);
+    return;
+  }
 }
 
 /// Of the events that are known, straight ones first: which side of it a point is on.
@@ -283,6 +303,10 @@ std::optional<std::uint32_t> ObstructedExchange::find_event(Viewpoint& view, Sig
     return sight(view, x).outline != 0 ? view.seen_edges() : std::vector<SeenEdge>{};
   };
   const std::vector<SeenEdge> from_here = edges_from(here.point), from_there = edges_from(there.point);
+  if (same_lines(from_here, from_there)) {
+    same_.emplace(std::max(here.outline, there.outline), std::min(here.outline, there.outline));
+    return {};
+  }
   for (const EdgeEvent& event : events_between(from_here, from_there)) {
     found_.push_back(event);
     const auto e = static_cast<std::uint32_t>(events_.size() + found_.size() - 1);
@@ -359,7 +383,10 @@ std::vector<std::uint32_t> ObstructedExchange::events_in(Viewpoint& view, const 
 
 /// A mixed cell, cut between what its points see; halved where that is too much for one cut.
 std::vector<AreaCell> ObstructedExchange::separate(Viewpoint& view, const Cell& cell) {
-  const std::vector<std::uint32_t> events = events_in(view, cell);
+  std::vector<std::uint32_t> events = events_in(view, cell);
+  for (const std::uint32_t e : cell.found) {
+    if (std::ranges::find(events, e) == events.end()) events.push_back(e);
+  }
   const auto is_straight = [&](std::uint32_t e) { return e < events_.size() || found_[e - events_.size()].plane(); };
   if (cell.shape.is_straight()) {
     for (const std::uint32_t e : events) {

@@ -46,6 +46,8 @@ class ObstructedExchange {
     double slowest = 0;                ///< fall that its first rule is believed to have at least
     std::vector<std::uint32_t> uncut;  ///< events that concern it
     bool mixed = false;                ///< its points see different outlines
+    bool looked = false;               ///< for events that happen between its points and its sides
+    std::vector<std::uint32_t> found;  ///< such events
     double integral = 0, error = 0, point_error = 0;
   };
 
@@ -61,6 +63,7 @@ class ObstructedExchange {
   std::uint64_t outline_of(const Viewpoint& view) const;
   Sighting sight(Viewpoint& view, const Vec3& from);
   void sight_corners(Viewpoint& view, const AreaCell& shape, std::vector<Sighting>& sightings);
+  void find_hidden_events(Viewpoint& view, Cell& cell, std::uint64_t outline, const Vec3& from);
   double side_of_event(std::uint32_t e, const Vec3& x) const;
   std::vector<AreaCell> cut_along(std::uint32_t e, const AreaCell& shape) const;
   std::vector<std::uint32_t> events_in(Viewpoint& view, const Cell& cell);
@@ -78,6 +81,7 @@ class ObstructedExchange {
   double most_ = 1, area_ = 0;
   RoundedContact contact_;
   std::vector<VisualEvent> events_;
+  std::vector<SeenEdge> edges_;                            ///< of the source and of what stands between
   std::unordered_map<std::uint64_t, std::uint64_t> same_;  ///< outlines that stand for others
   std::vector<EdgeEvent> found_;                           ///< events that points of a cell saw on different sides of
   std::vector<Vec3> contacts_;  ///< corners of the source and of occluders in the receiver's plane

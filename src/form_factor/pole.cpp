@@ -106,7 +106,10 @@ PoleError crossing_poles(std::span<const SeenEdge> edges, const AreaCell& cell, 
 PoleError corner_poles(std::span<const SeenEdge> edges, const Vec3& x, std::span<const Vec3> contacts,
                        const AreaCell& cell, int order) {
   const std::vector<Vec3> places = places_of(cell);
-  const Vec3 normal = cross(cell.corner[1] - cell.corner[0], cell.corner[2] - cell.corner[0]);
+  const auto& c = cell.corner;
+  // Of a quadrilateral two corners may be the same point.
+  const Vec3 of_three = cross(c[1] - c[0], c[2] - c[0]),
+             normal = cell.corners == 3 ? of_three : of_three + cross(c[2] - c[0], c[3] - c[0]);
   const double area = cell.area();
   PoleError result;
   double worst = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/form_factor/event_reach.h"
+
 namespace exitance {
 namespace {
 
@@ -44,48 +46,80 @@ Outline outline_of_item(const PolygonSoup& soup, std::uint32_t item) {
   return outline;
 }
 
+Outline outline_of_source(const PolygonSoup& soup, const Source& source) {
+  Outline outline;
+  outline.vertices = corners_of(soup, source);
+  for (std::size_t k = 0; k < outline.vertices.size(); ++k) {
+    outline.edges.push_back({outline.vertices[k], outline.vertices[(k + 1) % outline.vertices.size()]});
+  }
+  return outline;
+}
+
 class EventCollector {
  public:
-  EventCollector(const PolygonSoup& soup, const Source& receiver)
-      : soup_(soup), normal_(soup.facets()[receiver.facet].plane.normal), loop_(corners_of(soup, receiver)) {}
+  using Way = EventReach::Way;
+
+  EventCollector(const PolygonSoup& soup, const Source& receiver, const Source& source,
+                 std::span<const std::uint32_t> items)
+      : soup_(soup),
+        normal_(soup.facets()[receiver.facet].plane.normal),
+        loop_(corners_of(soup, receiver)),
+        reach_(soup, receiver, source, items) {}
+
+  void source_plane(std::uint32_t facet) {
+    const Plane& p = soup_.facets()[facet].plane;
+    keep(whole({p.normal, p.origin}));
+  }
 
   void plane_of(std::uint32_t facet) {
     const Plane& p = soup_.facets()[facet].plane;
-    keep({{p.normal, p.origin}, {}});
+    const CutPlane plane{p.normal, p.origin};
+    if (!crosses(loop_, plane)) return;
+    Vec3 along;
+    for (const LineStretch& s : reach_.of_facet(plane, corners_of(soup_, {facet, {}}), along)) keep({plane, along, s});
   }
 
   void contact(std::uint32_t facet) {
     const auto c = soup_.corners(soup_.facets()[facet]);
     for (std::size_t k = 0; k < c.size(); ++k) {
       const Vec3 &a = c[k].at, &b = c[(k + 1) % c.size()].at;
-      keep({{cross(b - a, normal_), a}, {}});
+      keep(whole({cross(b - a, normal_), a}));
     }
   }
 
-  /// A vertex in line with an edge, seen from beyond the vertex or from beyond the edge. Only an outline's edge counts:
-  /// the surfaces that meet in it lie on one side of the plane.
-  void vertex_edge(const Vec3& v, const Edge& e, bool beyond_vertex) {
+  /// Only an outline's edge counts: the surfaces that meet in it lie on one side of the plane.
+  void vertex_edge(const Vec3& v, const Outline& of_v, const Edge& e, Way way) {
     if (v == e.from || v == e.to) return;
-    const Vec3 c = e.from - v, d = e.to - v, n = cross(c, d);
-    const double sign = beyond_vertex ? -1 : 1;
-    const VisualEvent event{{n, v}, {sign * cross(n, c), -sign * cross(n, d)}};
-    if (!event.concerns(loop_)) return;
+    const CutPlane plane{cross(e.from - v, e.to - v), v};
+    const Vec3& n = plane.normal;
+    if (!crosses(loop_, plane)) return;
     if (e.left != kNone && e.right != kNone && side_of_facet(e.left, n, v) * side_of_facet(e.right, n, v) < 0) return;
-    keep(event);
+    Vec3 along;
+    for (const LineStretch& s : reach_.of_vertex_edge(plane, v, e.from, e.to, way, along)) keep({plane, along, s});
+    // An edge of the vertex in the same plane comes into line with e as a whole, seen past its ends or not.
+    for (const Edge& other : of_v.edges) {
+      if (other.from != v && other.to != v) continue;
+      const Vec3& end = other.from == v ? other.to : other.from;
+      if (std::fabs(dot(n, end - v)) > 1e-12 * norm(e.from - v) * norm(e.to - v) * norm(end - v)) continue;
+      const std::array one{v, end}, two{e.from, e.to};
+      for (const LineStretch& s : reach_.of_edges(plane, one, two, along)) keep({plane, along, s});
+    }
   }
 
-  void between(const Outline& a, const Outline& b, bool both_ways) {
+  void between(const Outline& a, const Outline& b) {
     for (const Vec3& v : a.vertices) {
       for (const Edge& e : b.edges) {
-        vertex_edge(v, e, true);
-        if (both_ways) vertex_edge(v, e, false);
+        vertex_edge(v, a, e, Way::vertex_edge);
+        vertex_edge(v, a, e, Way::edge_vertex);
       }
     }
   }
-  void source_edges(const Outline& occluder, const Outline& source) { between(occluder, source, false); }
-  void source_vertices(const Outline& source, const Outline& occluder) {
+  void before_source(const Outline& occluder, const Outline& source) {
+    for (const Vec3& v : occluder.vertices) {
+      for (const Edge& e : source.edges) vertex_edge(v, occluder, e, Way::vertex_source);
+    }
     for (const Vec3& v : source.vertices) {
-      for (const Edge& e : occluder.edges) vertex_edge(v, e, false);
+      for (const Edge& e : occluder.edges) vertex_edge(v, source, e, Way::edge_source);
     }
   }
 
@@ -109,6 +143,11 @@ class EventCollector {
     return std::fabs(farthest) <= 1e-12 * norm(n) * distance ? 0 : farthest > 0 ? 1 : -1;
   }
 
+  VisualEvent whole(const CutPlane& plane) const {
+    const Vec3 along = cross(normal_, plane.normal);
+    return {plane, (1 / norm(along)) * along};
+  }
+
   Trace trace_of(const VisualEvent& event) const {
     Trace t;
     double largest = 0;
@@ -126,18 +165,27 @@ class EventCollector {
     for (std::size_t k = 0; k < traces_.size(); ++k) {
       double apart = 0;
       for (std::size_t i = 0; i < 3; ++i) apart = std::max(apart, std::fabs(traces_[k].value[i] - t.value[i]));
-      if (apart < 1e-11) {  // one line: it matters wherever one of them does
-        events_[k].inside = {};
-        return;
-      }
+      if (apart < 1e-11 && joined(events_[k], event)) return;
     }
     events_.push_back(event);
     traces_.push_back(t);
   }
 
+  /// Joins another stretch of the same line to an event's, where they meet.
+  static bool joined(VisualEvent& event, const VisualEvent& other) {
+    const double start = dot(event.along, other.plane.point - event.plane.point),
+                 sign = std::copysign(1, dot(event.along, other.along));
+    LineStretch more;
+    for (const double end : {other.stretch.from, other.stretch.to}) more.add(start + sign * end);
+    if (more.from > event.stretch.to || more.to < event.stretch.from) return false;
+    event.stretch.add(more);
+    return true;
+  }
+
   const PolygonSoup& soup_;
   Vec3 normal_;
   std::vector<Vec3> loop_;
+  EventReach reach_;
   std::vector<VisualEvent> events_;
   std::vector<Trace> traces_;
 };
@@ -146,11 +194,17 @@ class EventCollector {
 
 bool VisualEvent::concerns(std::span<const Vec3> loop) const {
   if (!crosses(loop, plane)) return false;
-  for (const Vec3& n : inside) {
-    if (n == Vec3{}) continue;
-    if (std::all_of(loop.begin(), loop.end(), [&](const Vec3& v) { return dot(n, v - plane.point) < 0; })) return false;
+  LineStretch chord;
+  Vec3 a = loop.back();
+  double at_a = plane.at(a);
+  for (const Vec3& b : loop) {
+    const double at_b = plane.at(b);
+    if (at_b == 0) chord.add(dot(along, b - plane.point));
+    if (at_a * at_b < 0) chord.add(dot(along, a + (at_a / (at_a - at_b)) * (b - a) - plane.point));
+    a = b;
+    at_a = at_b;
   }
-  return true;
+  return chord.to >= stretch.from && chord.from <= stretch.to;
 }
 
 std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& piece) {
@@ -161,18 +215,24 @@ std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& piece) {
   return corners;
 }
 
+std::vector<SeenEdge> edges_of(const PolygonSoup& soup, const Source& source, std::span<const std::uint32_t> items) {
+  std::vector<SeenEdge> edges;
+  const auto add = [&](const Outline& outline) {
+    for (const Edge& e : outline.edges) edges.push_back({0, e.from, e.to, {}, {}});
+  };
+  add(outline_of_source(soup, source));
+  for (const std::uint32_t item : items) add(outline_of_item(soup, item));
+  return edges;
+}
+
 std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& receiver, const Source& source,
                                        std::span<const std::uint32_t> items) {
-  EventCollector events(soup, receiver);
-  events.plane_of(source.facet);
+  EventCollector events(soup, receiver, source, items);
+  events.source_plane(source.facet);
   for (const std::uint32_t t : soup.coplanar(receiver.facet)) {
     if (soup.covers(t, receiver.facet)) events.contact(t);
   }
-  Outline of_source;
-  of_source.vertices = corners_of(soup, source);
-  for (std::size_t k = 0; k < of_source.vertices.size(); ++k) {
-    of_source.edges.push_back({of_source.vertices[k], of_source.vertices[(k + 1) % of_source.vertices.size()]});
-  }
+  const Outline of_source = outline_of_source(soup, source);
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
   std::vector<Outline> between;
   std::size_t vertices = 0, edges = 0;
@@ -183,15 +243,14 @@ std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& re
       for (const std::uint32_t f : soup.shells()[item - facets].facets) events.plane_of(f);
     }
     between.push_back(outline_of_item(soup, item));
-    events.source_edges(between.back(), of_source);
-    events.source_vertices(of_source, between.back());
+    events.before_source(between.back(), of_source);
     vertices += between.back().vertices.size();
     edges += between.back().edges.size();
   }
   if (vertices * edges <= kOccluderEvents) {
     for (std::size_t i = 0; i < between.size(); ++i) {
       for (std::size_t j = 0; j < between.size(); ++j) {
-        if (i != j) events.between(between[i], between[j], true);
+        if (i != j) events.between(between[i], between[j]);
       }
     }
   }

@@ -2,20 +2,21 @@
 // Where the shape of what a receiver sees of a source changes: along lines on the receiver, the traces of planes
 // through a vertex and an edge (Gigus and Malik 1990 call them EV events), and where it meets other surfaces.
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "geometry/viewpoint.h"
-#include "src/form_factor/area_cell.h"
+#include "src/form_factor/sight_plane.h"
 
 namespace exitance {
 
-/// A plane whose trace on the receiver matters only where both functionals `inside` are not negative.
+/// A plane whose trace on the receiver matters only along a stretch, at the points x where dot(along, x − plane.point)
+/// lies in it.
 struct VisualEvent {
   CutPlane plane;
-  std::array<Vec3, 2> inside;  ///< normals of half-spaces through plane.point; zero where there is no limit
+  Vec3 along;  ///< unit vector
+  LineStretch stretch{-INFINITY, INFINITY};
 
   /// Whether the event may happen within a convex loop, at a line that cuts it.
   bool concerns(std::span<const Vec3> loop) const;
@@ -24,10 +25,14 @@ struct VisualEvent {
 /// The corners of a piece of a facet.
 std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& piece);
 
+/// The edges of a source and of what stands between.
+std::vector<SeenEdge> edges_of(const PolygonSoup& soup, const Source& source, std::span<const std::uint32_t> items);
+
 /// Events on the receiver of a source and of what stands between them, items of the soup's index: planes of the
 /// surfaces themselves, contacts in the receiver's plane, a vertex of the one against an edge of the other, and
-/// occluders against each other; each line once, but for those that differ in where they matter. Events of three edges
-/// are none of these, and curved; nor are those of occluders against each other where there are too many pairs of them.
+/// occluders against each other; each stretch of a line once, and only where a line of sight to the source shows it
+/// (EventReach). Events of three edges are none of these, and curved; nor are those of occluders against each other
+/// where there are too many pairs of them.
 std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& receiver, const Source& source,
                                        std::span<const std::uint32_t> items);
 

@@ -140,5 +140,43 @@ TEST(CornerPole, BoundsWhatRulesMissBesideACorner) {
   }
 }
 
+/// A triangle as a quadrilateral whose second corner is its third, too.
+TEST(CornerPole, OfACellWithTwoCornersInOnePoint) {
+  const SeenEdge e = edge(1, {-0.01, 0, 0}, {-0.3, 0.1, 1});
+  const Vec3 x{0.5, 0.3, 0};
+  SeenEdge seen = e;
+  seen.from = (1 / norm(e.a - x)) * (e.a - x);
+  seen.to = (1 / norm(e.b - x)) * (e.b - x);
+  const auto error = [&](const AreaCell& cell) { return corner_poles(std::array{seen}, x, {}, cell, 4).error; };
+  const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
+  EXPECT_GT(error({{a, b, b, c}, 4}), 0);
+  EXPECT_NEAR(error({{a, b, b, c}, 4}), error({{b, c, a, a}, 4}), 1e-12);
+}
+
+/// Two edges of the outline that cross above (u, v) and a third one past the crossing: seen from z = 0, from where
+/// u + v = 1.8, it comes to the crossing. A rule over the unit square looks from one side of that line only, but the
+/// square's corner lies on the other.
+TEST(HiddenEvents, InACornerThatNoPointOfARuleLooksFrom) {
+  const AreaCell cell{{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 1, 0}, Vec3{0, 1, 0}}, 4};
+  const Vec3 x{0.5, 0.5, 0}, meeting{0.5, 0.5, 1};
+  SeenEdge e = edge(1, meeting - Vec3{1, 0, 0}, meeting + Vec3{1, 0, 0}),
+           g = edge(2, meeting - Vec3{0, 1, 0} + Vec3{0, 0, 1e-9}, meeting + Vec3{0, 1, 0} + Vec3{0, 0, 1e-9});
+  const Vec3 d = (1 / norm(meeting - x)) * (meeting - x);
+  e.to = g.from = d;
+  // At half the height it is met where (x + meeting) / 2 lies on it.
+  const Vec3 on{0.7, 0.7, 0.5}, along{1, -1, 0.1};
+  const auto past = [&](const Vec3& shift) {
+    return hidden_events(std::array{e, g}, std::array{edge(3, on + shift - along, on + shift + along)}, x, cell);
+  };
+  const std::vector<HiddenEvent> found = past({});
+  ASSERT_FALSE(found.empty());
+  for (const HiddenEvent& hidden : found) {
+    EXPECT_LT(hidden.event.at(x) * hidden.event.at(hidden.beyond), 0);
+    EXPECT_GT(hidden.beyond.x + hidden.beyond.y, 1.7);
+  }
+  EXPECT_TRUE(past({0.2, 0.2, 0}).empty()) << "it passes outside of the cell";
+  EXPECT_TRUE(past({3, -3, 0.3}).empty()) << "it ends before";
+}
+
 }  // namespace
 }  // namespace exitance
