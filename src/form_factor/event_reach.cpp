@@ -43,6 +43,7 @@ EventReach::EventReach(const PolygonSoup& soup, const Source& receiver, const So
     };
     if (!lies_in(receiver_) && !lies_in(source_plane_)) blockers_.push_back({loop, item});
   };
+  if (items.size() == 1) return;  // what is on its outline it does not hide itself
   for (const std::uint32_t item : items) {
     if (item < facets) {
       add(item, item);
@@ -106,6 +107,11 @@ std::vector<LineStretch> EventReach::of_vertex_edge(const CutPlane& plane, const
                                                     const Vec3& to, Way way, Vec3& along) const {
   const SightPlane sight(receiver_, plane, blur_of(plane, from, to));
   along = sight.along();
+  // Of what pierces the planes of receiver or source no part of the trace is left out: there what was left out was missed.
+  const double below = -kLonger * size_;
+  for (const Vec3& v : {vertex, from, to}) {
+    if (receiver_.at(v) < below || source_plane_.at(v) < below) return {{-INFINITY, INFINITY}};
+  }
   const SightPlane::Place pivot = sight.place_of(vertex);
   if (!(pivot.height > kInPlane * size_)) return {};
   const double longer = kLonger * size_;
@@ -113,11 +119,6 @@ std::vector<LineStretch> EventReach::of_vertex_edge(const CutPlane& plane, const
   LineStretch reach = widened(
       sight.through(pivot, sight.place_of(from), sight.place_of(to), edge_first ? Order::before : Order::beyond),
       longer);
-  const auto ends = sight.chord_of(loop_, false);
-  if (!ends) return {};
-  LineStretch of_loop;
-  for (const Vec3& v : *ends) of_loop.add(sight.place_of(v).along);
-  reach.keep_within(widened(of_loop, longer));
   if (way == Way::vertex_edge || way == Way::edge_vertex) {
     const auto chord = sight.chord_of(source_, false);
     if (!chord) return {};
@@ -126,7 +127,9 @@ std::vector<LineStretch> EventReach::of_vertex_edge(const CutPlane& plane, const
   }
   if (reach.empty()) return {};
   std::vector<LineStretch> stretches{reach};
-  take_out_blocked(sight, vertex, stretches);
+  if (!blockers_.empty() && VisualEvent{plane, along, reach}.concerns(loop_)) {
+    take_out_blocked(sight, vertex, stretches);
+  }
   return stretches;
 }
 

@@ -58,7 +58,6 @@ ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& re
       most_(most),
       contact_(soup, receiver, source, items) {
   events_ = visual_events(soup, receiver, source, items);
-  edges_ = edges_of(soup, source, items);
   const std::vector<Vec3> loop = corners_of(soup, receiver);
   find_contacts();
   std::vector<AreaCell> shapes;
@@ -258,6 +257,7 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
 
 /// Looks for events that happen in a cell but not between its points, from one of which the outline was seen last.
 void ObstructedExchange::find_hidden_events(Viewpoint& view, Cell& cell, std::uint64_t outline, const Vec3& from) {
+  if (edges_.empty()) edges_ = edges_of(*soup_, source_, items_);
   const std::vector<SeenEdge> edges = view.seen_edges();
   for (const HiddenEvent& hidden : hidden_events(edges, edges_, from, cell.shape)) {
     const Sighting beyond = sight(view, hidden.beyond);

@@ -20,7 +20,6 @@ void LineStretch::keep_within(const LineStretch& other) {
 
 SightPlane::SightPlane(const CutPlane& receiver, const CutPlane& plane, double blur)
     : receiver_(receiver), plane_(plane), blur_(blur * norm(plane.normal)) {
-  receiver_.normal = normalized(receiver.normal);
   along_ = normalized(cross(receiver_.normal, plane.normal));
 }
 

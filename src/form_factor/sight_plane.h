@@ -30,8 +30,8 @@ class SightPlane {
     double along = 0, height = 0;
   };
 
-  /// `plane` cuts the receiver's. Points nearer than `blur`, a share of their distance from plane.point, count as
-  /// lying in it.
+  /// `plane` cuts the receiver's, whose normal is a unit vector. Points nearer than `blur`, a share of their distance
+  /// from plane.point, count as lying in it.
   SightPlane(const CutPlane& receiver, const CutPlane& plane, double blur);
 
   const Vec3& along() const { return along_; }  ///< unit vector in the direction of the trace

@@ -92,7 +92,7 @@ class EventCollector {
     if (v == e.from || v == e.to) return;
     const CutPlane plane{cross(e.from - v, e.to - v), v};
     const Vec3& n = plane.normal;
-    if (!crosses(loop_, plane)) return;
+    if (!crosses(loop_, plane) || !reaches(plane, e, way)) return;
     if (e.left != kNone && e.right != kNone && side_of_facet(e.left, n, v) * side_of_facet(e.right, n, v) < 0) return;
     Vec3 along;
     for (const LineStretch& s : reach_.of_vertex_edge(plane, v, e.from, e.to, way, along)) keep({plane, along, s});
@@ -141,6 +141,17 @@ class EventCollector {
       distance = std::max(distance, norm(w));
     }
     return std::fabs(farthest) <= 1e-12 * norm(n) * distance ? 0 : farthest > 0 ? 1 : -1;
+  }
+
+  /// Whether part of the receiver is within the angle, at the plane's point, of the edge or of what lies opposite.
+  bool reaches(const CutPlane& plane, const Edge& e, Way way) const {
+    const double sign = way == Way::vertex_edge || way == Way::vertex_source ? -1 : 1;
+    for (const Vec3& inside :
+         {sign * cross(plane.normal, e.from - plane.point), -sign * cross(plane.normal, e.to - plane.point)}) {
+      const auto is_outside = [&](const Vec3& v) { return dot(inside, v - plane.point) < 0; };
+      if (std::ranges::all_of(loop_, is_outside)) return false;
+    }
+    return true;
   }
 
   VisualEvent whole(const CutPlane& plane) const {
