@@ -7,18 +7,17 @@ namespace {
 
 Race race(bool reduced) {
   Race race{"Robot", read_dynamic_scene(EXITANCE_SOURCE_DIR "/data/robot.toml", Emission::exitance), {}};
-  race.tolerance = 1e-4;
-  race.shots_before = 6000;
+  race.tolerance = 3e-4;
+  race.column_memory = std::uint64_t{3} << 30;
   race.pictured = {5, 100};
   const MeshDefaults& mesh = race.scene.scene.mesh;
   race.mesh = {mesh.patch_size, mesh.elements_per_edge, mesh.small_patch};
   race.until = 0.01;
-  race.most_seconds = 900;
+  race.most_seconds = 1200;
   if (reduced) {  // the robot in the room of the Cube
     DynamicScene cube = read_dynamic_scene(EXITANCE_SOURCE_DIR "/data/cube.toml", Emission::exitance);
     race.mesh = {1.0, 1};
     race.tolerance = 1e-6;
-    race.shots_before = ~std::uint64_t{0};
     Scene& into = cube.scene;
     const auto material = static_cast<std::uint32_t>(into.materials.size());
     into.materials.insert(into.materials.end(), race.scene.scene.materials.begin(), race.scene.scene.materials.end());

@@ -2,22 +2,40 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "src/solve/radiosity_system.h"
 
 namespace exitance {
+namespace {
+
+/// Of an element; 0 beyond the end.
+double luminance(std::span<const double> weights, std::span<const double> B, std::uint32_t e) {
+  double y = 0;
+  for (std::size_t b = 0, i = std::size_t{e} * weights.size(); b < weights.size() && i + b < B.size(); ++b)
+    y += weights[b] * B[i + b];
+  return y;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> most_changed(std::span<const std::uint32_t> elements, std::uint32_t bands,
+                                        std::span<const double> reference, std::span<const double> was) {
+  const std::vector<double> weights = luminance_weights(bands);
+  std::vector<std::uint32_t> by_change(elements.begin(), elements.end());
+  std::ranges::stable_sort(by_change, std::greater<>(), [&](std::uint32_t e) {
+    return std::fabs(luminance(weights, reference, e) - luminance(weights, was, e));
+  });
+  by_change.resize((by_change.size() + 99) / 100);
+  std::ranges::sort(by_change);
+  return by_change;
+}
 
 ConvergenceError convergence_error(std::span<const std::uint32_t> elements,
                                    const std::function<double(std::uint32_t)>& area, std::uint32_t bands,
                                    std::span<const double> reference, std::span<const double> was,
                                    std::span<const double> current) {
   const std::vector<double> weights = luminance_weights(bands);
-  const auto Y = [&](std::span<const double> B, std::uint32_t e) {
-    double y = 0;
-    for (std::size_t b = 0, i = std::size_t{e} * bands; b < bands && i + b < B.size(); ++b) y += weights[b] * B[i + b];
-    return y;
-  };
+  const auto Y = [&](std::span<const double> B, std::uint32_t e) { return luminance(weights, B, e); };
   const auto error = [&](std::span<const std::uint32_t> of) {
     double missed = 0, all = 0, all_before = 0;
     for (const std::uint32_t e : of) {
@@ -28,10 +46,7 @@ ConvergenceError convergence_error(std::span<const std::uint32_t> elements,
     }
     return missed == 0 ? 0 : std::sqrt(missed / (all > 0 ? all : all_before));
   };
-  std::vector<std::uint32_t> by_change(elements.begin(), elements.end());
-  std::ranges::stable_sort(by_change, std::greater<>(),
-                           [&](std::uint32_t e) { return std::fabs(Y(reference, e) - Y(was, e)); });
-  return {error(elements), error(std::span(by_change).first((by_change.size() + 99) / 100))};
+  return {error(elements), error(most_changed(elements, bands, reference, was))};
 }
 
 }  // namespace exitance

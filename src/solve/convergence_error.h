@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 namespace exitance {
 
@@ -21,5 +22,9 @@ ConvergenceError convergence_error(std::span<const std::uint32_t> elements,
                                    const std::function<double(std::uint32_t)>& area, std::uint32_t bands,
                                    std::span<const double> reference, std::span<const double> was,
                                    std::span<const double> current);
+
+/// The 1 % (at least one) of `elements` whose luminance changed most, ascending, as above.
+std::vector<std::uint32_t> most_changed(std::span<const std::uint32_t> elements, std::uint32_t bands,
+                                        std::span<const double> reference, std::span<const double> was);
 
 }  // namespace exitance

@@ -114,7 +114,9 @@ TEST(SolutionRecordTest, WhatDoesNotFitIsNotWritten) {
   record.B.pop_back();
   EXPECT_THROW(write_solution_archive(scratch / "a.h5", record), std::invalid_argument);
   record = some_record();
-  record.mesh.pieces[1].loop_count = 0;
+  PatchPiece whole = record.mesh.pieces[1];
+  whole.loop_count = 0;
+  record.mesh.pieces.set(1, whole);
   EXPECT_THROW(write_solution_archive(scratch / "a.h5", record), std::invalid_argument);
   EXPECT_EQ(scratch.files(), 0u);
 }

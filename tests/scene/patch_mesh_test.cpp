@@ -371,7 +371,7 @@ TEST(PatchMesh, NeedlesKeepTheirAreaAndStayWhole) {
         const Scene scene = scene_of({{{{0, 0, 0}, up ? middle : tip, up ? tip : middle}, {}}});
         const PatchMesh mesh = make_patch_mesh(scene, make_soup(scene), {size, elements});
         ASSERT_EQ(mesh.elements.size(), 1u);
-        EXPECT_EQ(mesh.patches.at(0).area, 0.5);
+        EXPECT_EQ(mesh.patches[0].area, 0.5);
         EXPECT_EQ(mesh.elements[0].area, 0.5);
         EXPECT_EQ(mesh.elements[0].normal, (Vec3{0, 0, up ? 1.0 : -1.0}));
         EXPECT_EQ(mesh.elements[0].sample.z, 0);
