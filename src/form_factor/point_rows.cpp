@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "src/form_factor/row_blocks.h"
 
@@ -57,9 +58,15 @@ PointRowStatistics point_row_statistics(const MeshVisibility& visibility, std::s
   return sum;
 }
 
-void point_column(const MeshVisibility& visibility, std::size_t patch, std::span<double> F, std::span<double> F_error) {
+bool point_column(const MeshVisibility& visibility, std::size_t patch, std::span<double> F, std::span<double> F_error,
+                  const std::function<bool()>& stop) {
   Observers observers([&] { return visibility.observer(); });
+  std::atomic<bool> is_whole = true;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visibility.mesh().elements.size(), 256), [&](const auto& range) {
+    if (!is_whole || (stop && stop())) {
+      is_whole = false;
+      return;
+    }
     Observer& observer = *observers.local();
     for (std::size_t e = range.begin(); e < range.end(); ++e) {
       const PointFormFactor f = observer.entry(e, patch);
@@ -67,6 +74,7 @@ void point_column(const MeshVisibility& visibility, std::size_t patch, std::span
       F_error[e] = f.error;
     }
   });
+  return is_whole;
 }
 
 PointFormFactor patch_form_factor(const MeshVisibility& visibility, std::size_t receiver, std::size_t source) {

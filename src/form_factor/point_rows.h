@@ -1,6 +1,7 @@
 #pragma once
 // Form factors from the sample points of elements to all patches, by exact visibility or by rays.
 
+#include <functional>
 #include <span>
 
 #include "src/form_factor/form_factor_matrix.h"
@@ -26,8 +27,10 @@ PointRows point_rows(const MeshVisibility& visibility, std::size_t first, std::s
 PointRowStatistics point_row_statistics(const MeshVisibility& visibility, std::span<const std::size_t> elements,
                                         const Progress& progress = {});
 
-/// Form factor F[e] from every element to one patch, with error bounds: a column, for shooting without a matrix.
-void point_column(const MeshVisibility& visibility, std::size_t patch, std::span<double> F, std::span<double> F_error);
+/// Form factor F[e] from every element to one patch, with error bounds: a column, for shooting without a matrix. `stop`
+/// is asked by any thread every few elements; false when it said true and the column is not whole.
+bool point_column(const MeshVisibility& visibility, std::size_t patch, std::span<double> F, std::span<double> F_error,
+                  const std::function<bool()>& stop = {});
 
 /// Form factor from the elements of one patch, averaged by area, to another patch: the pair integrated anew.
 PointFormFactor patch_form_factor(const MeshVisibility& visibility, std::size_t receiver, std::size_t source);

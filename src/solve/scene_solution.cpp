@@ -173,18 +173,19 @@ class SceneSolver {
     result_.element_row_sum.assign(n, 0);
     std::vector<bool> is_known(result_.mesh.patches.size());
     const auto column = [&](std::size_t patch, std::span<double> F, std::span<double> F_error) {
-      point_column(*visibility_, patch, F, F_error);
-      if (is_known[patch]) return;
+      if (!point_column(*visibility_, patch, F, F_error, options_.stop)) return false;
+      if (is_known[patch]) return true;
       is_known[patch] = true;
       for (std::size_t e = 0; e < n; ++e) result_.element_row_sum[e] += F[e];
+      return true;
     };
     shoot_all(column);
     // What never shot, because it is black, is needed for the energy that escapes.
     std::vector<double> F(n), F_error(n);
-    for (std::size_t p = 0; p < is_known.size() && !result_.stopped; ++p) {
-      if (!is_known[p]) column(p, F, F_error);
-    }
     all_columns_known_ = !result_.stopped;
+    for (std::size_t p = 0; p < is_known.size() && all_columns_known_; ++p) {
+      if (!is_known[p]) all_columns_known_ = column(p, F, F_error);
+    }
     if (!stopped()) measure_sample();
     result_.seconds_solve = stopwatch_.lap();
   }

@@ -54,11 +54,12 @@ class Shooting {
     return true;
   }
 
-  void shoot_strongest(const ShootColumn& column) {
+  /// False when the column was stopped: then nothing is shot.
+  bool shoot_strongest(const ShootColumn& column) {
     const std::size_t from = strongest_;
     std::fill(F_.begin(), F_.end(), 0.0);
     std::fill(F_error_.begin(), F_error_.end(), 0.0);
-    column(from, F_, F_error_);
+    if (!column(from, F_, F_error_)) return false;
     if (!is_seen_[from]) check_row_sums();
     is_seen_[from] = true;
 
@@ -70,6 +71,7 @@ class Shooting {
       for (std::size_t p = some.begin(); p < some.end(); ++p) receive(p, amount);
     });
     measure();
+    return true;
   }
 
   ShootSolution solution(std::uint64_t shots, double tolerance) const {
@@ -181,6 +183,7 @@ ShootColumn column_of(const FormFactorMatrix& transposed) {
       F[elements[k]] = transposed.row(patch)[k];
       F_error[elements[k]] = transposed.row_error(patch)[k];
     }
+    return true;
   };
 }
 
@@ -201,7 +204,7 @@ ShootSolution shoot(const Discretisation& d, const ShootColumn& column, const Sh
   std::uint64_t shots = 0;
   const auto stopped = [&] { return shots >= options.max_shots || (options.stop && options.stop()); };
   while (!stopped() && !solved() && !state.only_rounding_is_left(options.tolerance)) {
-    state.shoot_strongest(column);
+    if (!state.shoot_strongest(column)) break;
     ++shots;
     if (options.progress) {
       const double left = std::max(state.unshot_energy() / first_energy, options.tolerance);

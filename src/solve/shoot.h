@@ -13,8 +13,9 @@
 namespace exitance {
 
 /// Fills F[e] and F_error[e], form factor from every element e to the patch and a bound of its error. Both come zeroed.
-/// Asked again when a patch shoots again.
-using ShootColumn = std::function<void(std::size_t patch, std::span<double> F, std::span<double> F_error)>;
+/// Asked again when a patch shoots again. False: it was stopped, and the column is not whole; then nothing is shot any
+/// more.
+using ShootColumn = std::function<bool(std::size_t patch, std::span<double> F, std::span<double> F_error)>;
 
 /// Columns read from the transposed (patches × elements) rows of the elements; `transposed` must outlive the result.
 ShootColumn column_of(const FormFactorMatrix& transposed);

@@ -233,9 +233,10 @@ TEST(PointRows, RowsAndColumnsAreThoseOfTheWholeMatrix) {
   for (std::size_t e = 50; e < 60; ++e) EXPECT_EQ(row(middle.F, e - 50), row(all.F, e));
   std::vector<double> F(rows.mesh.elements.size()), F_error(F.size());
   for (const std::size_t patch : {0u, 17u, 199u}) {
-    point_column(ExactVisibility(rows.mesh, rows.soup), patch, F, F_error);
+    EXPECT_TRUE(point_column(ExactVisibility(rows.mesh, rows.soup), patch, F, F_error));
     for (std::size_t e = 0; e < F.size(); ++e) EXPECT_EQ(F[e], row(all.F, e)[patch]) << e << ' ' << patch;
   }
+  EXPECT_FALSE(point_column(ExactVisibility(rows.mesh, rows.soup), 0, F, F_error, [] { return true; }));
   EXPECT_EQ(rows.some(7, 7).F.rows(), 0u);
 }
 

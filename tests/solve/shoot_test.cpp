@@ -102,7 +102,10 @@ TEST(Shoot, StrongestByLuminanceShootsFirst) {
   d.rho.assign(9, 0.0);
   d.E = {10, 0, 0, 0, 2, 0, 0, 0, 100};
   std::vector<std::size_t> order;
-  shoot(d, [&](std::size_t patch, std::span<double>, std::span<double>) { order.push_back(patch); });
+  shoot(d, [&](std::size_t patch, std::span<double>, std::span<double>) {
+    order.push_back(patch);
+    return true;
+  });
   EXPECT_THAT(order, testing::ElementsAre(2, 1, 0));
 }
 
@@ -145,11 +148,32 @@ TEST(Shoot, UnreachableToleranceIsAdmittedWithABoundThatHolds) {
   EXPECT_GT(vanished, 3);  // the unshot alone would have been no bound
 }
 
+TEST(Shoot, AColumnThatIsStoppedIsNotShot) {
+  const RadiositySystem system = random_enclosure(10, 3, 0.9, 1.0, 5);
+  const FormFactorMatrix columns = transpose(system.F);
+  const Discretisation d = one_element_each(system);
+  const ShootSolution three = shoot(d, column_of(columns), {.max_shots = 3});
+  int asked = 0;
+  const ShootSolution stopped = shoot(d, [&](std::size_t patch, std::span<double> F, std::span<double> F_error) {
+    if (++asked <= 3) return column_of(columns)(patch, F, F_error);
+    std::ranges::fill(F, 1.0);
+    return false;
+  });
+  EXPECT_EQ(asked, 4);
+  EXPECT_EQ(stopped.patches.iterations, 3u);
+  EXPECT_FALSE(stopped.patches.converged);
+  EXPECT_EQ(stopped.patches.B, three.patches.B);
+  EXPECT_EQ(stopped.element_H, three.element_H);
+  EXPECT_EQ(stopped.unshot, three.unshot);
+}
+
 TEST(Shoot, NothingEmitsNothingIsShot) {
   RadiositySystem system = random_enclosure(10, 3, 0.9, 1.0, 5);
   system.E.assign(system.E.size(), 0.0);
-  const ShootSolution solution =
-      shoot(one_element_each(system), [](auto, auto, auto) { FAIL() << "there is nothing to shoot"; });
+  const ShootSolution solution = shoot(one_element_each(system), [](auto, auto, auto) {
+    ADD_FAILURE() << "there is nothing to shoot";
+    return false;
+  });
   EXPECT_THAT(solution.patches.B, testing::Each(0.0));
   EXPECT_THAT(solution.element_B, testing::Each(0.0));
   EXPECT_TRUE(solution.patches.converged);
@@ -212,7 +236,7 @@ TEST(Shoot, BadDiscretisationsAreRefusedByType) {
   const auto refused = [&](auto&& spoil) {
     Discretisation bad = good;
     spoil(bad);
-    EXPECT_THROW(shoot(bad, [](auto, auto, auto) {}), InvalidSystem);
+    EXPECT_THROW(shoot(bad, [](auto, auto, auto) { return true; }), InvalidSystem);
   };
   refused([](Discretisation& d) { d.element_first[1] = 2; });  // patch 1 has no element
   refused([](Discretisation& d) { d.element_area.pop_back(); });
