@@ -20,7 +20,8 @@ class CoarseElements {
  public:
   CoarseElements(const SceneVersion& version, std::size_t surfaces) : version_(version), of_surface_(surfaces) {
     for (std::uint32_t e = 0; e < version.elements(); ++e) {
-      if (version.has_element(e)) of_surface_[version.mesh().patches[version.mesh().elements[e].patch].surface].push_back(e);
+      if (version.has_element(e))
+        of_surface_[version.mesh().patches[version.mesh().elements[e].patch].surface].push_back(e);
     }
   }
 
@@ -37,11 +38,11 @@ class CoarseElements {
   std::vector<std::vector<std::uint32_t>> of_surface_;
 };
 
-/// By element and band of the state, B on `elements`, ascending; elsewhere the state's. On each of them light is gathered
-/// by exact visibility at all sample points of the finer mesh that lie on it, from all patches of the finer mesh, which
-/// have the radiosity of the state's elements where they lie. A finer mesh's solution differs from this by what the
-/// errors of the state's elements bring after one more reflection, which averages them.
-/// REQUIRES: the state is converged and `finer` cuts the scene as it is now. In parallel.
+/// By element and band of the state, B on `elements`, ascending; elsewhere the state's. On each of them light is
+/// gathered by exact visibility at all sample points of the finer mesh that lie on it, from all patches of the finer
+/// mesh, which have the radiosity of the state's elements where they lie. A finer mesh's solution differs from this by
+/// what the errors of the state's elements bring after one more reflection, which averages them. REQUIRES: the state is
+/// converged and `finer` cuts the scene as it is now. In parallel.
 inline std::vector<double> finer_radiosity(const DynamicRadiosity& state, const EditedScene& scene,
                                            const MeshOptions& finer, std::span<const std::uint32_t> elements) {
   const std::uint32_t bands = state.bands();
@@ -56,7 +57,8 @@ inline std::vector<double> finer_radiosity(const DynamicRadiosity& state, const 
     const Patch& patch = mesh.patches[element.patch];
     place[e] = places.nearest(patch.surface, element.sample);
     for (std::uint32_t b = 0; b < bands; ++b)
-      B[std::size_t{element.patch} * bands + b] += element.area / patch.area * coarse[std::size_t{place[e]} * bands + b];
+      B[std::size_t{element.patch} * bands + b] +=
+          element.area / patch.area * coarse[std::size_t{place[e]} * bands + b];
   }
   std::vector<std::uint32_t> points;
   for (std::uint32_t e = 0; e < place.size(); ++e) {
@@ -84,7 +86,8 @@ inline std::vector<double> finer_radiosity(const DynamicRadiosity& state, const 
     const std::uint32_t surface = state.version().mesh().patches[state.version().mesh().elements[e].patch].surface;
     const Material& material = scene.scene().materials[scene.scene().surfaces[surface].material];
     for (std::uint32_t b = 0; b < bands; ++b)
-      found[std::size_t{e} * bands + b] = material.E[b] + material.rho[b] * (power[std::size_t{e} * bands + b] / area[e]);
+      found[std::size_t{e} * bands + b] =
+          material.E[b] + material.rho[b] * (power[std::size_t{e} * bands + b] / area[e]);
   }
   return found;
 }

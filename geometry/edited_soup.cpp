@@ -48,9 +48,8 @@ void PolygonSoup::find_facets(const Box& box, std::vector<std::uint32_t>& found)
 }
 
 bool PolygonSoup::is_present(std::uint32_t facet) const {
-  return facet < used_ && std::ranges::none_of(gone_, [&](const auto& range) {
-    return range.first <= facet && facet < range.second;
-  });
+  return facet < used_ &&
+         std::ranges::none_of(gone_, [&](const auto& range) { return range.first <= facet && facet < range.second; });
 }
 
 /// Whether an edge that facet f or g leaves open comes to the other, or two of their edges may run along each other.
@@ -63,8 +62,7 @@ bool PolygonSoup::joins(std::uint32_t f, std::uint32_t g, double near) const {
       Box edge;
       edge.extend(a);
       edge.extend(b);
-      if (loop[k].neighbour == kNone && edge.overlaps(there) &&
-          !has_both_on_one_side(facets_[other].plane, a, b, near))
+      if (loop[k].neighbour == kNone && edge.overlaps(there) && !has_both_on_one_side(facets_[other].plane, a, b, near))
         return true;
     }
     return false;
@@ -189,7 +187,8 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   after.update_coplanar(first, beside);
   after.touched_ = beside;
   for (std::uint32_t f = first; f < store.used; ++f) after.touched_.push_back(f);
-  if (!store.closed_known && std::ranges::any_of(after.touched_, [&](std::uint32_t f) { return after.is_against_patch(f); }))
+  if (!store.closed_known &&
+      std::ranges::any_of(after.touched_, [&](std::uint32_t f) { return after.is_against_patch(f); }))
     return std::nullopt;
   return after;
 }

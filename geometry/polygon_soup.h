@@ -86,8 +86,8 @@ class PolygonSoup {
   using Rank = std::uint64_t;
 
   /// Takes polygons without defects other than zero area (those have no facets). roles: one for each polygon, or empty
-  /// for all `patch`. ranks: likewise, or empty for the order in which they are given. spare: room for so many facets that
-  /// later edits bring (`edited`), and for as many polygons.
+  /// for all `patch`. ranks: likewise, or empty for the order in which they are given. spare: room for so many facets
+  /// that later edits bring (`edited`), and for as many polygons.
   explicit PolygonSoup(std::span<const Polygon> polygons, std::span<const Role> roles = {},
                        std::span<const Rank> ranks = {}, std::uint32_t spare = 0);
 
@@ -100,12 +100,13 @@ class PolygonSoup {
     std::uint32_t first = 0, last = 0;
   };
 
-  /// The soup in which the polygons first … last − 1 of `before` are gone and others have come (`arrived`). All other polygons, facets and shells keep their numbers; those that are gone are there still, but
-  /// in nothing that is searched. Takes time and memory by what goes and comes and by what lies beside that, not by all.
-  /// None where it cannot be told from that alone what others become, and the soup must be made anew: what goes or comes
-  /// meets edges of others or, with edges that it leaves open, their faces; patches lie against each other where none
-  /// did; the extent changes; the spare room is used up.
-  /// No two threads may make soups from `before`, or from soups that share with it, at a time.
+  /// The soup in which the polygons first … last − 1 of `before` are gone and others have come (`arrived`). All other
+  /// polygons, facets and shells keep their numbers; those that are gone are there still, but in nothing that is
+  /// searched. Takes time and memory by what goes and comes and by what lies beside that, not by all. None where it
+  /// cannot be told from that alone what others become, and the soup must be made anew: what goes or comes meets edges
+  /// of others or, with edges that it leaves open, their faces; patches lie against each other where none did; the
+  /// extent changes; the spare room is used up. No two threads may make soups from `before`, or from soups that share
+  /// with it, at a time.
   static std::optional<PolygonSoup> edited(const PolygonSoup& before, PolygonRange gone, const Arrival& arrival);
 
   PolygonSoup(const PolygonSoup&) = delete;  // only edits share
@@ -134,8 +135,8 @@ class PolygonSoup {
   /// The facets of polygon p are first_facet(p) … first_facet(p + 1) − 1.
   std::uint32_t first_facet(std::uint32_t polygon) const { return first_facet_[polygon]; }
 
-  /// With those that are gone. Closed manifolds that bound a solid (shell.h). A ray from outside the box meets a front face of the shell before
-  /// any back face: back faces hide nothing that front faces do not.
+  /// With those that are gone. Closed manifolds that bound a solid (shell.h). A ray from outside the box meets a front
+  /// face of the shell before any back face: back faces hide nothing that front faces do not.
   std::span<const Shell> shells() const { return shells_; }
 
   /// Other facets that lie exactly in the plane of facet f, or of the same polygon within rounding (2^-40 of f's size),
@@ -192,11 +193,11 @@ class PolygonSoup {
   std::span<const Corner> corners_;
   std::span<const FirstCorners> first_corners_;  // by facet
   std::span<const Shell> shells_;
-  std::span<const Role> roles_;                  // by polygon
-  std::span<const std::uint32_t> first_facet_;   // by polygon, and the end
-  Paged<std::vector<std::uint32_t>> coplanar_;   // by facet
+  std::span<const Role> roles_;                                // by polygon
+  std::span<const std::uint32_t> first_facet_;                 // by polygon, and the end
+  Paged<std::vector<std::uint32_t>> coplanar_;                 // by facet
   std::vector<std::pair<std::uint32_t, std::uint32_t>> gone_;  // facets first … last − 1, ascending
-  std::uint32_t used_ = 0;  ///< facets before the spare ones
+  std::uint32_t used_ = 0;                                     ///< facets before the spare ones
   PolygonRange arrived_;
   std::vector<std::uint32_t> touched_;
   SpatialIndex index_;

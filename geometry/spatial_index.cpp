@@ -137,7 +137,8 @@ std::int32_t SpatialIndex::Tree::build(std::span<std::uint32_t> items, std::span
   return index;
 }
 
-void SpatialIndex::Tree::find(std::span<const HalfSpace> region, const Box& box, std::vector<std::uint32_t>& found) const {
+void SpatialIndex::Tree::find(std::span<const HalfSpace> region, const Box& box,
+                              std::vector<std::uint32_t>& found) const {
   if (nodes.empty()) return;
   using Floats = float __attribute__((vector_size(kWidth * sizeof(float))));
   using Ints = std::int32_t __attribute__((vector_size(kWidth * sizeof(std::int32_t))));

@@ -60,8 +60,8 @@ class SpatialIndex {
     Box box;
   };
 
-  /// The index without the items `gone` and with those `added`, whose numbers are new. The tree is shared, what was added
-  /// since it was made has a small one of its own: takes time by what has changed since then.
+  /// The index without the items `gone` and with those `added`, whose numbers are new. The tree is shared, what was
+  /// added since it was made has a small one of its own: takes time by what has changed since then.
   SpatialIndex changed(std::span<const std::uint32_t> gone, std::span<const Item> added) const;
 
   /// Appends to `found` every item whose box reaches into each of the half-spaces and touches or overlaps the box.

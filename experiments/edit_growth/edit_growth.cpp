@@ -31,7 +31,7 @@ constexpr std::uint32_t kEdits = 11;
 /// How rooms get more patches.
 enum class Family {
   detail,  ///< one furnished room, cut and furnished ever finer: more of it lies in the object's shadow
-  row      ///< the furnished room of the fewest patches, and copies of it beside it: the same lies in the object's shadow
+  row  ///< the furnished room of the fewest patches, and copies of it beside it: the same lies in the object's shadow
 };
 
 const char* name_of(Family family) {
@@ -71,7 +71,8 @@ Scene room_with_box(Family family, std::uint32_t polygons) {
   const auto corner = [&](int k) {
     return Vec3{(k & 1) != 0 ? high.x : low.x, (k & 2) != 0 ? high.y : low.y, (k & 4) != 0 ? high.z : low.z};
   };
-  for (const auto& face : {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+  for (const auto& face :
+       {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
     Surface surface;
     for (const int k : face) surface.polygon.outer.push_back(corner(k));
     surface.object = object;
@@ -163,11 +164,12 @@ int run(int argc, char** argv) {
   app.add_flag("--reduced", reduced, "Small rooms only");
   app.add_option("--check", expected, "Compare counts with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
-  CsvTable table{{"rooms", "patches", "remade", "candidates", "tests", "edit_ms", "edit_kilobytes", "order_ms", "shots_ms"},
-                 {}};
+  CsvTable table{
+      {"rooms", "patches", "remade", "candidates", "tests", "edit_ms", "edit_kilobytes", "order_ms", "shots_ms"}, {}};
   Plot plot{"The same object moves in rooms of ever more patches", "patches", "processor time [ms], memory [MB]"};
-  const std::vector<std::uint32_t> sizes = reduced ? std::vector<std::uint32_t>{1000, 2000}
-                                                   : std::vector<std::uint32_t>{1000, 2000, 4000, 8000, 15000, 30000, 60000};
+  const std::vector<std::uint32_t> sizes =
+      reduced ? std::vector<std::uint32_t>{1000, 2000}
+              : std::vector<std::uint32_t>{1000, 2000, 4000, 8000, 15000, 30000, 60000};
   for (const Family family : {Family::detail, Family::row}) {
     PlotSeries edits{fmt::format("{}: an edit [ms]", name_of(family)), {}};
     PlotSeries shots{fmt::format("{}: its order and its {} shots [ms]", name_of(family), kShotsBefore), {}};
@@ -196,8 +198,8 @@ int run(int argc, char** argv) {
     write_plot(std::filesystem::path(out) / "plot.svg", plot);
   }
   if (expected.empty()) return 0;
-  return verdict(differences(table, CsvTable::read(expected), 2, 0.001,
-                             {"edit_ms", "edit_kilobytes", "order_ms", "shots_ms"}));
+  return verdict(
+      differences(table, CsvTable::read(expected), 2, 0.001, {"edit_ms", "edit_kilobytes", "order_ms", "shots_ms"}));
 }
 
 }  // namespace

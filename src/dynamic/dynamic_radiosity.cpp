@@ -378,7 +378,8 @@ Discretisation DynamicRadiosity::discretisation() const {
   d.bands = bands_;
   d.rho = rho_;
   d.E = E_;
-  for (const Patch& patch : version().mesh().patches) d.element_first.push_back(patch.element_first + patch.element_count);
+  for (const Patch& patch : version().mesh().patches)
+    d.element_first.push_back(patch.element_first + patch.element_count);
   for (const Element& element : version().mesh().elements) d.element_area.push_back(element.area);
   return d;
 }

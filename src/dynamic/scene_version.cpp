@@ -6,7 +6,8 @@
 namespace exitance {
 namespace {
 
-/// Room for what edits bring: so that a soup is made anew once in so many edits that all together bring as much as it has.
+/// Room for what edits bring: so that a soup is made anew once in so many edits that all together bring as much as it
+/// has.
 constexpr std::uint32_t kLeastSpare = 1024;
 
 struct Surfaces {
@@ -90,8 +91,8 @@ SceneVersion::SceneVersion(const SceneVersion& before, const EditedScene& scene,
   const bool shares = soup_.shares_with(before.soup_);
   if (shares) slots_[object].polygons = soup_.arrived();
   place_objects(scene, !shares);
-  const PatchMesh own = make_patch_mesh(scene.scene(), soup_, options, surfaces.first, surfaces.last,
-                                        slots_[object].polygons.first);
+  const PatchMesh own =
+      make_patch_mesh(scene.scene(), soup_, options, surfaces.first, surfaces.last, slots_[object].polygons.first);
   object_of_patch_ = before.object_of_patch_;
   const bool fits = !slots_[object].present || (own.patches.size() == slots_[object].patch_count &&
                                                 own.elements.size() == slots_[object].element_count);
@@ -133,7 +134,8 @@ void SceneVersion::take_others(const SceneVersion& before, std::uint32_t object)
     for (std::uint32_t k = 0; k < slots_.size(); ++k) {
       const std::uint32_t offset = slots_[k].surface_first - before.slots_[k].surface_first;
       if (k == object || !slots_[k].present || offset == 0) continue;
-      for (std::uint32_t p = 0; p < slots_[k].patch_count; ++p) mesh_.patches[slots_[k].patch_first + p].surface += offset;
+      for (std::uint32_t p = 0; p < slots_[k].patch_count; ++p)
+        mesh_.patches[slots_[k].patch_first + p].surface += offset;
     }
     return;
   }

@@ -63,9 +63,7 @@ class SceneVersion {
   std::uint32_t object_of_element(std::uint32_t element) const {
     return object_of_patch(mesh_.elements[element].patch);
   }
-  bool has_element(std::uint32_t element) const {
-    return element < elements() && object_of_element(element) != kVoid;
-  }
+  bool has_element(std::uint32_t element) const { return element < elements() && object_of_element(element) != kVoid; }
 
   /// The object that a facet of the soup belongs to, or kVoid. Takes time by the number of objects.
   std::uint32_t object_of_facet(std::uint32_t facet) const;
@@ -113,7 +111,7 @@ class SceneVersion {
   PatchMesh mesh_;
   ExactVisibility visibility_;
   std::vector<ObjectSlot> slots_;
-  SharedRows<std::uint32_t> object_of_patch_;  ///< + 1; 0: nobody's
+  SharedRows<std::uint32_t> object_of_patch_;          ///< + 1; 0: nobody's
   std::shared_ptr<const ElementIndex> element_index_;  ///< shared by versions that follow each other
   mutable tbb::enumerable_thread_specific<std::unique_ptr<Observer>> observers_;
   mutable tbb::enumerable_thread_specific<std::unique_ptr<PatchSight>> sights_;

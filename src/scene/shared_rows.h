@@ -12,9 +12,9 @@
 namespace exitance {
 
 /// Rows that may be changed in place. They are held in pages; a page is copied when one of its rows is touched by an
-/// array that shares it. A copy takes time and memory by the number of pages. Reading is safe from any number of threads
-/// while none changes this array; changing one array changes no other. Not const, [] may copy a page: to read, read a
-/// const array.
+/// array that shares it. A copy takes time and memory by the number of pages. Reading is safe from any number of
+/// threads while none changes this array; changing one array changes no other. Not const, [] may copy a page: to read,
+/// read a const array.
 template <class T>
 class SharedRows {
  public:

@@ -81,7 +81,8 @@ bool Contacts::touched(std::uint32_t facet, const Vec3& point) const {
 }
 
 bool Contacts::buried(std::uint32_t facet, const Vec3& point) const {
-  return any_at(lying_on_[facet].burying, point, kOfComputed * near_) || any_at(lying_on_[facet].touching, point, kOfComputed * near_);
+  return any_at(lying_on_[facet].burying, point, kOfComputed * near_) ||
+         any_at(lying_on_[facet].touching, point, kOfComputed * near_);
 }
 
 bool Contacts::overlaid(std::uint32_t facet, const Vec3& point) const {

@@ -247,12 +247,12 @@ TEST_F(EditedRoom, MustBeMadeAnewWhereAnEditConcernsOthers) {
     return PolygonSoup::edited(base, {}, objects.list(object, object + 1).arrival()).has_value();
   };
   EXPECT_TRUE(comes(3, placed(shape(3), 0.3, {0.5, 0.5, 1})));
-  EXPECT_TRUE(comes(3, placed(shape(3), 0.3, {0.5, 0.5, 0})));        // stands on the floor
-  EXPECT_FALSE(comes(3, placed(shape(3), 0, {2.5, 1.5, 0})));         // shares edges with the table
-  EXPECT_FALSE(comes(3, placed(shape(3), 0, {2.5, 1.75, 0})));        // runs along one of its edges
-  EXPECT_FALSE(comes(1, placed(shape(1), 0.3, {0.5, 2.2, 0})));       // ends on the floor, which closes it
-  EXPECT_TRUE(comes(1, placed(shape(1), 0.3, {0.5, 2.2, 2})));        // ends nowhere
-  EXPECT_FALSE(comes(3, placed(shape(3), 0.3, {3.5, 3.5, 3.5})));     // reaches out of the extent
+  EXPECT_TRUE(comes(3, placed(shape(3), 0.3, {0.5, 0.5, 0})));     // stands on the floor
+  EXPECT_FALSE(comes(3, placed(shape(3), 0, {2.5, 1.5, 0})));      // shares edges with the table
+  EXPECT_FALSE(comes(3, placed(shape(3), 0, {2.5, 1.75, 0})));     // runs along one of its edges
+  EXPECT_FALSE(comes(1, placed(shape(1), 0.3, {0.5, 2.2, 0})));    // ends on the floor, which closes it
+  EXPECT_TRUE(comes(1, placed(shape(1), 0.3, {0.5, 2.2, 2})));     // ends nowhere
+  EXPECT_FALSE(comes(3, placed(shape(3), 0.3, {3.5, 3.5, 3.5})));  // reaches out of the extent
   std::vector<Polygon> many(401, shape(3)[0]);
   const std::vector<Role> roles(many.size(), Role::patch);
   const std::vector<Rank> ranks(many.size(), Rank{3} << 32);
