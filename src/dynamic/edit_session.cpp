@@ -60,11 +60,6 @@ void EditSession::open_temporary() {
 
 void EditSession::apply(const Edit& edit) {
   const bool of_selected = selected_ == edit.object;
-  if (selected_ && !of_selected && edit.operation != Operation::select)
-    throw InvalidEdit(fmt::format("object '{}' is selected; deselect it before others are edited",
-                                  scene_.scene().objects[*selected_].name));
-  if (edit.operation == Operation::deselect && !selected_ && options_.method != UpdateMethod::scratch)
-    throw InvalidEdit("no object is selected that could be deselected");
   if (edit.operation == Operation::select && of_selected) return;
   const EditedScene::Effect effect = scene_.apply(edit);
   edited_ = edit.object;

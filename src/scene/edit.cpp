@@ -75,6 +75,11 @@ void EditedScene::refuse_what_has_no_meaning(const Edit& edit) const {
   if (edit.object >= rest_.size())
     throw InvalidEdit(fmt::format("there is no object {}; the scene has {}", edit.object, rest_.size()));
   const std::string& name = scene_.objects[edit.object].name;
+  if (selected_ && *selected_ != edit.object && edit.operation != Operation::select)
+    throw InvalidEdit(fmt::format("object '{}' is selected; deselect it before others are edited",
+                                  scene_.objects[*selected_].name));
+  if (edit.operation == Operation::deselect && !selected_)
+    throw InvalidEdit(fmt::format("object '{}' is not selected; select it before it can be deselected", name));
   const bool present = present_[edit.object];
   if (edit.operation == Operation::add && present)
     throw InvalidEdit(fmt::format("object '{}' is there already and cannot be added; move it, or remove it first", name));
@@ -134,6 +139,7 @@ EditedScene::Effect EditedScene::apply(const Edit& edit) {
     case Operation::remove:
       take_out(object);
       effect.geometry = true;
+      selected_.reset();
       break;
     case Operation::reshape:
       rest_[object] = edit.shape;
@@ -142,9 +148,13 @@ EditedScene::Effect EditedScene::apply(const Edit& edit) {
       put(object);
       effect.geometry = true;
       break;
-    case Operation::change:
     case Operation::select:
+      selected_ = object;
+      break;
     case Operation::deselect:
+      selected_.reset();
+      break;
+    case Operation::change:
       break;
   }
   return effect;

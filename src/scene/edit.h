@@ -60,7 +60,8 @@ Camera camera_at(std::span<const CameraAt> path, double time);
 
 /// Thrown for an edit that has no meaning: of an object that does not exist, the addition of one that is there, a move
 /// or removal of one that is not, a change of a material that it does not have, a shape without surfaces, an object put
-/// where it cannot be computed with.
+/// where it cannot be computed with, an edit of another object than the one that is selected (but for selecting it, which
+/// lets the first go), and letting go of what is not selected.
 class InvalidEdit : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -86,7 +87,7 @@ class EditedScene {
   struct Effect {
     bool geometry = false, materials = false;
   };
-  /// All or nothing: throws InvalidEdit and leaves the scene as it was. Selecting changes nothing here.
+  /// All or nothing: throws InvalidEdit and leaves the scene as it was. Selecting changes no surface.
   Effect apply(const Edit& edit);
 
  private:
@@ -99,6 +100,7 @@ class EditedScene {
   std::vector<std::vector<Surface>> rest_;  ///< by object, as read or as reshaped
   std::vector<Placement> placement_;        ///< by object
   std::vector<bool> present_;               ///< by object
+  std::optional<std::uint32_t> selected_;
 };
 
 }  // namespace exitance

@@ -173,6 +173,11 @@ TEST_F(EventFile, BadEventsNameTheirLineAndWhatIsWrong) {
   EXPECT_THAT(error_of(event(2, "cube", "add") + event(1, "cube", "remove")), HasSubstr("in order of time"));
   EXPECT_THAT(error_of(event(2, "cube", "add") + event(2, "cube", "remove")), HasSubstr("another event at 2"));
   EXPECT_THAT(error_of(event(1, "cube", "remove")), HasSubstr("not there"));
+  const std::string added = event(1, "cube", "add");
+  EXPECT_THAT(error_of(added + event(2, "cube", "deselect")), HasSubstr("'cube' is not selected"));
+  EXPECT_THAT(error_of(added + event(2, "cube", "select") + event(3, "room", "remove")),
+              HasSubstr("'cube' is selected; deselect it before"));
+  EXPECT_EQ(error_of(added + event(2, "cube", "select") + event(3, "room", "select") + event(4, "room", "deselect")), "");
   EXPECT_THAT(error_of(event(1, "cube", "add") + event(2, "cube", "add")), HasSubstr("there already"));
   EXPECT_THAT(error_of(event(1, "cube", "add") + event(2, "cube", "change")), HasSubstr("needs \"material\""));
   EXPECT_THAT(error_of(event(1, "cube", "add") + event(2, "cube", "change", "material = \"blue\"")),
