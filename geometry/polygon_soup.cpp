@@ -95,11 +95,13 @@ PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role
     : store_(std::make_shared<Store>()) {
   if (!roles.empty() && roles.size() != polygons.size())
     throw std::invalid_argument("PolygonSoup: as many roles as polygons, or none");
+  if (!ranks.empty() && ranks.size() != polygons.size())
+    throw std::invalid_argument("PolygonSoup: as many ranks as polygons, or none");
   Store& store = *store_;
   store.roles.assign(roles.begin(), roles.end());
   if (roles.empty()) store.roles.assign(polygons.size(), Role::patch);
   store.ranks.assign(ranks.begin(), ranks.end());
-  for (std::size_t p = store.ranks.size(); p < polygons.size(); ++p) store.ranks.push_back(p);
+  for (std::size_t p = 0; ranks.empty() && p < polygons.size(); ++p) store.ranks.push_back(p);
   store.first_facet.push_back(0);
   Cut cut;
   std::size_t facets = spare, corners = std::size_t{4} * spare;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <iterator>
 
 namespace exitance {
 namespace {
@@ -213,14 +214,15 @@ SpatialIndex::SpatialIndex(std::span<const Box> boxes) : tree_(std::make_shared<
 
 SpatialIndex SpatialIndex::changed(std::span<const std::uint32_t> gone, std::span<const Item> added) const {
   SpatialIndex after = *this;
-  for (const std::uint32_t item : gone) {
-    const auto own = std::ranges::find(after.added_, item, &Item::number);
-    if (own != after.added_.end()) {
-      after.added_.erase(own);
-    } else {
-      after.gone_.push_back(item);
-    }
-  }
+  std::vector<std::uint32_t> left(gone.begin(), gone.end()), found;
+  std::ranges::sort(left);
+  std::erase_if(after.added_, [&](const Item& item) {
+    const bool is_gone = std::ranges::binary_search(left, item.number);
+    if (is_gone) found.push_back(item.number);
+    return is_gone;
+  });
+  std::ranges::sort(found);
+  std::ranges::set_difference(left, found, std::back_inserter(after.gone_));
   std::ranges::sort(after.gone_);
   after.added_.insert(after.added_.end(), added.begin(), added.end());
   std::vector<Box> boxes;

@@ -12,7 +12,8 @@ namespace exitance {
 
 /// An event is seen from where a line of sight runs through what makes it and on to the source, and nothing else blocks
 /// that. What blocks is found a little smaller, and what is left a little larger, than it is: by 1e-9 of the receiver's
-/// size and more, so that rounding hides no event.
+/// size and more, so that rounding hides none that is longer, unless the scene's coordinates are 10,000 times as large
+/// as the receiver.
 class EventReach {
  public:
   /// items: what may stand between, of the soup's index.

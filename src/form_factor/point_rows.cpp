@@ -63,12 +63,12 @@ bool point_column(const MeshVisibility& visibility, std::size_t patch, std::span
   Observers observers([&] { return visibility.observer(); });
   std::atomic<bool> is_whole = true;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visibility.mesh().elements.size(), 256), [&](const auto& range) {
-    if (!is_whole || (stop && stop())) {
-      is_whole = false;
-      return;
-    }
     Observer& observer = *observers.local();
     for (std::size_t e = range.begin(); e < range.end(); ++e) {
+      if (!is_whole || (stop && stop())) {
+        is_whole = false;
+        return;
+      }
       const PointFormFactor f = observer.entry(e, patch);
       F[e] = f.F;
       F_error[e] = f.error;

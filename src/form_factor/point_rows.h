@@ -28,7 +28,7 @@ PointRowStatistics point_row_statistics(const MeshVisibility& visibility, std::s
                                         const Progress& progress = {});
 
 /// Form factor F[e] from every element to one patch, with error bounds: a column, for shooting without a matrix. `stop`
-/// is asked by any thread every few elements; false when it said true and the column is not whole.
+/// is asked by any thread before each element; false when it said true and the column is not whole.
 bool point_column(const MeshVisibility& visibility, std::size_t patch, std::span<double> F, std::span<double> F_error,
                   const std::function<bool()>& stop = {});
 

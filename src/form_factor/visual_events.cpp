@@ -64,6 +64,7 @@ class EventCollector {
       : soup_(soup),
         normal_(soup.facets()[receiver.facet].plane.normal),
         loop_(corners_of(soup, receiver)),
+        spread_(spread_corners(loop_)),
         reach_(soup, receiver, source, items) {}
 
   void source_plane(std::uint32_t facet) {
@@ -126,7 +127,23 @@ class EventCollector {
   std::vector<VisualEvent> take() { return std::move(events_); }
 
  private:
-  /// Values at the first three corners that are not in line tell one line on the receiver from another.
+  /// The corners of a polygon's largest triangle.
+  static std::array<Vec3, 3> spread_corners(std::span<const Vec3> loop) {
+    std::array<Vec3, 3> spread{loop[0], loop[0], loop[0]};
+    double largest = 0;
+    for (std::size_t j = 1; j < loop.size(); ++j) {
+      for (std::size_t k = j + 1; k < loop.size(); ++k) {
+        const double size = norm(cross(loop[j] - loop[0], loop[k] - loop[0]));
+        if (size > largest) {
+          largest = size;
+          spread = {loop[0], loop[j], loop[k]};
+        }
+      }
+    }
+    return spread;
+  }
+
+  /// Values at three corners that are not in line tell one line on the receiver from another.
   struct Trace {
     std::array<double, 3> value;
   };
@@ -163,7 +180,7 @@ class EventCollector {
     Trace t;
     double largest = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      t.value[k] = event.plane.at(loop_[k * loop_.size() / 3]);
+      t.value[k] = event.plane.at(spread_[k]);
       if (std::fabs(t.value[k]) > std::fabs(largest)) largest = t.value[k];
     }
     for (double& v : t.value) v /= largest;

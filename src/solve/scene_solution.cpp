@@ -186,6 +186,7 @@ class SceneSolver {
     for (std::size_t p = 0; p < is_known.size() && all_columns_known_; ++p) {
       if (!is_known[p]) all_columns_known_ = column(p, F, F_error);
     }
+    result_.stopped = !all_columns_known_;
     if (!stopped()) measure_sample();
     result_.seconds_solve = stopwatch_.lap();
   }

@@ -64,7 +64,7 @@ struct SceneSolution {
   /// Of each band, what shooting that was ended early had still to spread (ambient_estimate): for display only, where
   /// B + ρ · ambient is shown. Empty otherwise.
   std::vector<double> ambient;
-  bool stopped = false;  ///< max_shots or `stop` ended the work before the tolerance was reached
+  bool stopped = false;  ///< max_shots or `stop` ended the work before the tolerance was reached and all rows were known
 
   Receivers receivers = Receivers::points;
   std::optional<RayOptions> rays;  ///< as asked

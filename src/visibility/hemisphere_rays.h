@@ -28,8 +28,8 @@ struct HemisphereHits {
   double standard_error(std::uint64_t hits) const;
 };
 
-/// Of the two sides of a sheet a ray meets the one that it comes from. Which of two other surfaces in one plane it meets
-/// first is left to chance.
+/// Of the two sides of a sheet that are cut into the same facets a ray meets the one that it comes from. Which of two
+/// other surfaces in one plane it meets first is left to chance.
 class HemisphereRays {
  public:
   /// Keeps a reference to the mesh. Throws std::invalid_argument on options out of range, std::runtime_error when

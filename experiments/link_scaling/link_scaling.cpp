@@ -1,0 +1,105 @@
+// How do time and memory of links, and of an edit of them, grow with their number? After Feng, Chang, Shen and Yang.
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/csv_table.h"
+#include "experiments/plot_note.h"
+#include "experiments/power_law.h"
+#include "src/links/linked_radiosity.h"
+#include "src/output/plot.h"
+#include "src/scene/scene_file.h"
+
+namespace exitance {
+namespace {
+
+struct Series {
+  std::string scene;
+  std::vector<double> shares;  ///< of the eps2 and the smallest area in the scene file, falling
+};
+
+struct Tables {
+  CsvTable links{{"scene", "share_of_thresholds", "links", "sub_patches", "E-E", "E-O", "O-O", "bytes_per_link",
+                  "seconds_build", "links_per_second", "affected_by_edit", "updated_by_hvt", "seconds_hvt"},
+                 {}};
+  Plot plot{"Links: building and updating", "links", "processor seconds"};
+};
+
+void measure(const Series& series, bool reduced, Tables& tables) {
+  const DynamicScene given = read_dynamic_scene(
+      std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / (series.scene + ".toml"), Emission::exitance);
+  std::vector<Edit> edits;
+  std::vector<std::uint8_t> moves(given.scene.objects.size());
+  for (const Event& event : given.events) {
+    if (event.time != given.events.front().time) break;  // what happens at once is one edit
+    edits.push_back(event.edit);
+    moves[event.edit.object] = 1;
+  }
+  Curve build, hvt;
+  for (const double share : series.shares) {
+    LinkOptions options;
+    options.eps2 = *given.links.eps2 * share;
+    options.eps1 = options.eps2 / 2;
+    options.smallest_area = *given.links.smallest_area * share;
+    options.tolerance = 1e-5;
+    LinkedRadiosity radiosity(given.scene, options);
+    const LinkUpdate built = radiosity.build();
+    const LinkCounts counts = radiosity.links().count(radiosity.tree(), moves);
+    const auto sub_patches = std::ranges::count(radiosity.nodes_in_use(), 1);
+    const LinkUpdate edited = radiosity.update(edits, LinkMethod::hvt);
+    const auto links = static_cast<double>(counts.links());
+    const auto part = [&](std::uint64_t n) { return digits(static_cast<double>(n) / links); };
+    tables.links.rows.push_back({reduced ? series.scene + " reduced" : series.scene, digits(share),
+                                 fmt::format("{}", counts.links()), fmt::format("{}", sub_patches),
+                                 part(counts.environment), part(counts.mixed), part(counts.dynamic),
+                                 digits(static_cast<double>(counts.bytes) / links), digits(built.cpu_seconds),
+                                 digits(links / built.cpu_seconds), part(edited.work.links_affected),
+                                 part(edited.work.links_updated), digits(edited.cpu_seconds)});
+    build.emplace_back(links, built.cpu_seconds);
+    hvt.emplace_back(links, edited.cpu_seconds);
+    fmt::print(stderr, "{}, {} links: built in {:.3f} s, updated in {:.4f} s\n", series.scene, counts.links(),
+               built.cpu_seconds, edited.cpu_seconds);
+  }
+  tables.plot.series.push_back({fmt::format("{}, build: slope {:.2f}", series.scene, slope(build)), build});
+  tables.plot.series.push_back({fmt::format("{}, update by HVT: slope {:.2f}", series.scene, slope(hvt)), hvt});
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Building and updating links, from 10,000 to 10,000,000"};
+  std::string out, expected;
+  bool reduced = false;
+  app.add_option("-o,--output", out, "Folder for results.csv and plot.svg");
+  app.add_flag("--reduced", reduced, "Box only, with few links");
+  app.add_option("--check", expected, "Compare counts and shares with this table; exit code 1 where they differ");
+  CLI11_PARSE(app, argc, argv);
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  Tables tables;
+  tables.plot.note = plot_note();
+  if (reduced) {
+    measure({"box", {8, 4}}, reduced, tables);
+  } else {
+    measure({"box", {4, 2, 1, 0.5, 0.25, 0.115}}, reduced, tables);
+    measure({"hall", {4, 1, 0.5, 0.25, 0.18}}, reduced, tables);
+  }
+  if (!out.empty()) {
+    std::filesystem::create_directories(out);
+    tables.links.write(std::filesystem::path(out) / "results.csv");
+    write_plot(std::filesystem::path(out) / "plot.svg", tables.plot);
+  }
+  if (expected.empty()) return 0;
+  return verdict(differences(tables.links, CsvTable::read(expected), 2, 0.02,
+                             {"seconds_build", "links_per_second", "seconds_hvt"}));
+}
+
+}  // namespace
+}  // namespace exitance
+
+int main(int argc, char** argv) {
+  return exitance::run(argc, argv);
+}
