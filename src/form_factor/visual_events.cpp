@@ -213,6 +213,7 @@ class EventCollector {
   const PolygonSoup& soup_;
   Vec3 normal_;
   std::vector<Vec3> loop_;
+  std::array<Vec3, 3> spread_;  // of its corners
   EventReach reach_;
   std::vector<VisualEvent> events_;
   std::vector<Trace> traces_;
