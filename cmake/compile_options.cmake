@@ -15,6 +15,9 @@ if(EXITANCE_SANITIZE)
   add_compile_options(-fsanitize=${EXITANCE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${EXITANCE_SANITIZE})
 endif()
+if(EXITANCE_SANITIZE MATCHES thread)
+  include_directories(BEFORE ${PROJECT_SOURCE_DIR}/tests/tsan)  # its parallel_for says why
+endif()
 
 # GCC 12 with AVX-512 stores the literals {a, a, 0, 0} as {a, a, a, a}: it takes a constant of 256 bits whose upper words
 # are zero for a broadcast of the lower ones, where it may move it from a general register (tests/scene/compiler_test.cpp).

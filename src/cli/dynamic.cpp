@@ -175,7 +175,7 @@ class Dynamic {
   }
 
   bool stop() {
-    partial_ = partial_ || interrupted() || (time_limit_ && seconds_since(start_) > *time_limit_);
+    if (interrupted() || (time_limit_ && seconds_since(start_) > *time_limit_)) partial_ = true;
     return partial_;
   }
 

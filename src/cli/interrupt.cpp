@@ -2,23 +2,27 @@
 
 #include <signal.h>
 
+#include <atomic>
+
 namespace exitance {
 namespace {
 
-volatile sig_atomic_t flag = 0;
+// All threads ask, and a handler may write it as no lock is taken.
+std::atomic<bool> flag = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 }  // namespace
 
 void catch_interrupts() {
   struct sigaction action {};
-  action.sa_handler = [](int) { flag = 1; };
+  action.sa_handler = [](int) { flag = true; };
   action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
 
 bool interrupted() {
-  return flag != 0;
+  return flag;
 }
 
 }  // namespace exitance
