@@ -50,12 +50,12 @@ double perimeter_of(const AreaCell& shape) {
 }  // namespace
 
 ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& receiver, const Source& source,
-                                       std::span<const std::uint32_t> items, double most)
+                                       std::span<const std::uint32_t> items)
     : soup_(&soup),
       receiver_(receiver),
       source_(source),
       items_(items),
-      most_(most),
+      bound_(soup, receiver, source),
       contact_(soup, receiver, source, items) {
   events_ = visual_events(soup, receiver, source, items);
   const std::vector<Vec3> loop = corners_of(soup, receiver);
@@ -72,11 +72,12 @@ ObstructedExchange::ObstructedExchange(const PolygonSoup& soup, const Source& re
   }
 }
 
-/// Of which nothing is known but that no point of it sees more than `most`.
+/// Of which nothing is known but what its points may see at most.
 ObstructedExchange::Cell ObstructedExchange::unmeasured(const AreaCell& shape) const {
   Cell cell;
   cell.shape = shape;
-  cell.error = most_ * shape.area();
+  cell.most = bound_.from(shape);
+  cell.error = cell.most * shape.area();
   return cell;
 }
 
@@ -251,8 +252,8 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
     find_hidden_events(view, cell, outline, scratch_.back().point);
   }
   if (cell.mixed) cell.error = std::max(cell.error, truncation.last + kMixed * (greatest - least) * area);
-  if (cell.mixed && greatest == 0) cell.error = kUnnoticed * most_ * area;
-  if (!cell.uncut.empty()) cell.error += kUnnoticed * most_ * area;
+  if (cell.mixed && greatest == 0) cell.error = kUnnoticed * cell.most * area;
+  if (!cell.uncut.empty()) cell.error += kUnnoticed * cell.most * area;
 }
 
 /// Looks for events that happen in a cell but not between its points, from one of which the outline was seen last.

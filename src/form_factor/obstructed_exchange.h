@@ -10,6 +10,7 @@
 
 #include "geometry/viewpoint.h"
 #include "src/form_factor/edge_event.h"
+#include "src/form_factor/form_factor_bound.h"
 #include "src/form_factor/rounded_contact.h"
 #include "src/form_factor/visual_events.h"
 
@@ -25,9 +26,8 @@ namespace exitance {
 class ObstructedExchange {
  public:
   /// Receiver and source: pieces of two facets. items: what may stand between, of the soup's index, ascending.
-  /// `most`: bound of the form factor from any point of the receiver to the source.
   ObstructedExchange(const PolygonSoup& soup, const Source& receiver, const Source& source,
-                     std::span<const std::uint32_t> items, double most);
+                     std::span<const std::uint32_t> items);
 
   /// Refines until error() ≤ tolerance [m²] or `points` points have been looked from in all; one that needs extended
   /// precision counts for several; or until `stop`, asked before each cell, says so.
@@ -41,7 +41,8 @@ class ObstructedExchange {
  private:
   struct Cell {
     AreaCell shape;
-    int order = 0;  ///< of the rule that measured it; 0: none did
+    double most = 1;  ///< bound of what its points see
+    int order = 0;    ///< of the rule that measured it; 0: none did
     double fall = 1;
     double slowest = 0;                ///< fall that its first rule is believed to have at least
     std::vector<std::uint32_t> uncut;  ///< events that concern it
@@ -78,7 +79,8 @@ class ObstructedExchange {
   const PolygonSoup* soup_;
   Source receiver_, source_;
   std::span<const std::uint32_t> items_;
-  double most_ = 1, area_ = 0;
+  FormFactorBound bound_;
+  double area_ = 0;
   RoundedContact contact_;
   std::vector<VisualEvent> events_;
   std::vector<SeenEdge> edges_;                            ///< of the source and of what stands between

@@ -14,14 +14,6 @@ namespace {
 /// A pair that could exchange no more than this share of what is needed without anything between is not integrated.
 constexpr double kNegligible = 1e-2;
 
-/// Bound of the form factor from any point of one radiator to the other: a disc's worth of area at the distance of the
-/// spheres around them, and never more than 1.
-double most(const RadiatorFacet& from, const RadiatorFacet& to) {
-  const double distance = norm(to.centre - from.centre) - from.radius - to.radius;
-  if (!(distance > 0)) return 1;
-  return std::min(1.0, 1.01 * to.area / (boost::math::constants::pi<double>() * distance * distance));
-}
-
 /// The farthest that a facet's corners lie off another one's plane; infinite if that is more than the rounding of
 /// coordinates explains.
 double rounding_between(const RadiatorFacet& facet, const RadiatorFacet& plane, double size) {
@@ -129,9 +121,8 @@ PairIntegrator::Exchanged PairIntegrator::exchange(const ExchangeScene::Piece& a
   // What stands between takes away: the exchange lies between 0 and the unobstructed one, however badly it is known.
   const double unobstructed = open.integral + open.error, half = 0.5 * unobstructed;
   if (half <= kNegligible * needed) return {half, half, PairClass::partial};
-  const RadiatorFacet &of_a = a.radiator.facets()[0], &of_b = b.radiator.facets()[0];
-  ObstructedExchange there(scene_.soup(), a.source, b.source, items_, most(of_a, of_b));
-  ObstructedExchange back(scene_.soup(), b.source, a.source, items_, most(of_b, of_a));
+  ObstructedExchange there(scene_.soup(), a.source, b.source, items_);
+  ObstructedExchange back(scene_.soup(), b.source, a.source, items_);
   ObstructedExchange *one = &there, *other = &back;
   if (back.events() < there.events()) std::swap(one, other);
   one->refine(view_, needed, options.points, options.stop);

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "geometry/contour_form_factor.h"
@@ -69,13 +68,6 @@ std::vector<SampledPair> draw(const ExchangeScene& scene, std::span<const PairRo
   return pairs;
 }
 
-/// Bound of the form factor from any point of one radiator to the other: a disc's worth of area at their distance.
-double most(const Radiator& from, const Radiator& to) {
-  const RadiatorFacet &f = from.facets()[0], &t = to.facets()[0];
-  const double distance = norm(t.centre - f.centre) - f.radius - t.radius;
-  return distance > 0 ? std::min(1.0, 1.01 * t.area / (std::numbers::pi * distance * distance)) : 1;
-}
-
 void add(Exchange& sum, const Exchange& more) {
   sum.integral += more.integral;
   sum.error += more.error;
@@ -107,8 +99,7 @@ Recomputed recompute(const ExchangeScene& scene, Viewpoint& view, const SampledP
         continue;
       }
       const auto over = [&](const ExchangeScene::Piece& receiver, const ExchangeScene::Piece& source) {
-        ObstructedExchange exchange(scene.soup(), receiver.source, source.source, items,
-                                    most(receiver.radiator, source.radiator));
+        ObstructedExchange exchange(scene.soup(), receiver.source, source.source, items);
         exchange.refine(view, needed, options.points, options.stop);
         return Exchange{exchange.integral(), exchange.error()};
       };

@@ -8,8 +8,9 @@
 namespace exitance {
 namespace {
 
-/// Pairs of occluders are looked at up to this many vertices times edges.
-constexpr std::size_t kOccluderEvents = 20'000;
+/// Pairs of occluders are looked at up to this many vertices times edges. Of more, few events are seen from any one
+/// cell, and cells are cut sooner along those alone that their points tell of.
+constexpr std::size_t kOccluderEvents = 5'000;
 
 /// An edge with the facets on either side of it; kNone: nothing, several, or it does not matter.
 struct Edge {
