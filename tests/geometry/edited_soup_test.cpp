@@ -257,6 +257,18 @@ TEST_F(EditedRoom, MustBeMadeAnewWhereAnEditConcernsOthers) {
   const std::vector<Role> roles(many.size(), Role::patch);
   const std::vector<Rank> ranks(many.size(), Rank{3} << 32);
   EXPECT_FALSE(PolygonSoup::edited(base, {}, {many, roles, ranks}));  // no room
+
+  // What was begun and given up leaves nothing behind.
+  Objects objects = objects_;
+  objects.faces[5] = placed(shape(5), 0.3, {0.7, 0.7, 2});
+  const auto after = PolygonSoup::edited(base, {}, objects.list(5, 6).arrival());
+  ASSERT_TRUE(after);
+  const Objects::List list = objects.all();
+  const PolygonSoup anew = fresh(list);
+  std::vector<Range> ranges = objects_.all().of_object;
+  ranges[5] = after->arrived();
+  std::mt19937 random(1);
+  expect_same(*after, anew, facet_map(*after, ranges, anew, list.of_object), random);
 }
 
 TEST(EditedSoup, TheFirstPatchThatLiesAgainstAnotherIsNoneOfIt) {
