@@ -9,24 +9,30 @@
 
 namespace exitance {
 
-/// Elements in pages; a page is copied when one of its elements is set while another array has it, too. A copy takes
-/// time and memory by the number of pages. Any number of threads may read what none sets.
-template <class T>
+/// Elements in pages of kPage; a page is copied when one of its elements is to be changed while another array has it,
+/// too. A copy takes time and memory by the number of pages. Any number of threads may read what none changes.
+template <class T, std::size_t kPage = 64>
 class Paged {
  public:
   /// All elements are T{}.
-  explicit Paged(std::size_t size = 0) : pages_((size + kPage - 1) / kPage, std::make_shared<Page>()) {}
+  explicit Paged(std::size_t size = 0) { resize(size); }
+
+  /// New elements are T{}; they share pages until they are changed. Never shrinks.
+  void resize(std::size_t size) {
+    if (pages_.size() * kPage < size) pages_.resize((size + kPage - 1) / kPage, std::make_shared<Page>());
+  }
 
   const T& operator[](std::size_t i) const { return (*pages_[i / kPage])[i % kPage]; }
 
-  void set(std::size_t i, T value) {
+  /// To be changed.
+  T& own(std::size_t i) {
     std::shared_ptr<Page>& page = pages_[i / kPage];
     if (page.use_count() > 1) page = std::make_shared<Page>(*page);
-    (*page)[i % kPage] = std::move(value);
+    return (*page)[i % kPage];
   }
+  void set(std::size_t i, T value) { own(i) = std::move(value); }
 
  private:
-  static constexpr std::size_t kPage = 64;
   using Page = std::array<T, kPage>;
 
   std::vector<std::shared_ptr<Page>> pages_;

@@ -2,19 +2,19 @@
 // Arrays whose copies share what they have in common: what versions of a scene that follow each other are made of.
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <iterator>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "geometry/paged.h"
+
 namespace exitance {
 
-/// Rows that may be changed in place. They are held in pages; a page is copied when one of its rows is touched by an
-/// array that shares it. A copy takes time and memory by the number of pages. Reading is safe from any number of
-/// threads while none changes this array; changing one array changes no other. Not const, [] may copy a page: to read,
-/// read a const array.
+/// Rows that may be changed in place, in pages that copies share (paged.h). Reading is safe from any number of threads
+/// while none changes this array; changing one array changes no other. Not const, [] may copy a page: to read, read a
+/// const array.
 template <class T>
 class SharedRows {
  public:
@@ -23,19 +23,15 @@ class SharedRows {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
 
-  const T& operator[](std::size_t i) const { return (*pages_[i / kPage])[i % kPage]; }
-  T& operator[](std::size_t i) {
-    std::shared_ptr<Page>& page = pages_[i / kPage];
-    if (page.use_count() > 1) page = std::make_shared<Page>(*page);
-    return (*page)[i % kPage];
-  }
+  const T& operator[](std::size_t i) const { return pages_[i]; }
+  T& operator[](std::size_t i) { return pages_.own(i); }
   const T& back() const { return (*this)[size_ - 1]; }
   T& back() { return (*this)[size_ - 1]; }
 
   /// New rows are T{}; they share pages until they are changed. Never shrinks.
   void resize(std::size_t size) {
     if (size <= size_) return;
-    if (pages_.size() * kPage < size) pages_.resize((size + kPage - 1) / kPage, std::make_shared<Page>());
+    pages_.resize(size);
     size_ = size;
   }
   T& emplace_back() {
@@ -73,10 +69,7 @@ class SharedRows {
   auto end() { return Iterator<SharedRows, T>(this, size_); }
 
  private:
-  static constexpr std::size_t kPage = 128;
-  using Page = std::array<T, kPage>;
-
-  std::vector<std::shared_ptr<Page>> pages_;
+  Paged<T, 128> pages_;
   std::size_t size_ = 0;
 };
 
