@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <numeric>
 #include <stdexcept>
 #include <unordered_map>
 
 #include "geometry/edge_matching.h"
 #include "geometry/facets.h"
+#include "geometry/point_hash.h"
 #include "geometry/polygon_soup_store.h"
 #include "geometry/shell.h"
 #include "geometry/surface_pieces.h"
@@ -17,14 +17,7 @@ namespace exitance {
 namespace {
 
 struct HashPoint {
-  std::size_t operator()(const Vec3& p) const {
-    std::uint64_t h = 0;
-    for (const double c : {p.x, p.y, p.z}) {
-      h = (h ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15u;  // −0 + 0 is 0, which it equals
-      h ^= h >> 32;
-    }
-    return h;
-  }
+  std::size_t operator()(const Vec3& p) const { return hash_of(p); }
 };
 
 std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {

@@ -37,6 +37,9 @@ struct Silhouette {
   bool is_usable = false;      ///< above the horizon, without edges that coincide
 };
 
+/// [1/rad] Where nothing coarser is asked for, crossings are known to 2^-46.
+inline constexpr double kFinestPerAngle = 0x1p46;
+
 /// What the functionals of one view are evaluated with.
 struct Evaluation {
   const ViewFrame& frame;
@@ -168,7 +171,7 @@ inline bool coincide(const Vec3& x, const ViewPlane& a, const ViewPlane& b) {
   return run_along(*b.c, *b.d) && run_along(*a.c, *b.d) && run_along(*b.c, *a.d);
 }
 
-/// Whether edges of the silhouette coincide. Those that do have one and the same side, so that each component of its unit
+/// Whether edges of the silhouette coincide. Those that do have one and the same side, so that one component of its unit
 /// normal, known to within 1.1 error / |m| and 4 roundings, sorts them next to each other.
 template <class Real>
 bool has_edges_that_coincide(const Silhouette<Real>& silhouette, const Evaluation& evaluation) {

@@ -53,7 +53,7 @@ class ViewCones {
     return *silhouette;
   }
 
-  /// What that shell hides of one of its own edges.
+  /// What that shell hides of one of its own edges. REQUIRES: silhouette_of(shell), usable, in this view.
   const typename Silhouette<Real>::Hidden& hidden_of(std::uint32_t shell, std::size_t edge) {
     Silhouette<Real>& silhouette = *silhouettes_[shell].second;
     auto& hidden = silhouette.hidden[edge];
@@ -62,7 +62,7 @@ class ViewCones {
       hidden.stretches.clear();
       const ViewFrame frame{view_.receiver().point, view_.receiver().normal, {}};
       hidden.is_all = layers_.find(silhouette.cone, silhouette.cone.sides[edge], silhouette, Tie::own_edge,
-                                   {frame, view_.counts(), 0x1p46}, hidden.stretches);
+                                   {frame, view_.counts(), kFinestPerAngle}, hidden.stretches);
     }
     return hidden;
   }
@@ -131,7 +131,7 @@ class ViewCones {
     silhouette.is_usable = std::ranges::all_of(vertices, [&](std::uint32_t v) { return view_.horizon(v) > 0; });
     if (!silhouette.is_usable) return;
     const ViewFrame frame{view_.receiver().point, view_.receiver().normal, {}};
-    silhouette.is_usable = !has_edges_that_coincide<Real>(silhouette, {frame, view_.counts(), 0x1p46});
+    silhouette.is_usable = !has_edges_that_coincide<Real>(silhouette, {frame, view_.counts(), kFinestPerAngle});
     silhouette.hidden.resize(silhouette.cone.sides.size());
     for (auto& hidden : silhouette.hidden) hidden.is_known = false;
   }

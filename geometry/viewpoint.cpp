@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -10,30 +9,22 @@
 
 #include "geometry/extended.h"
 #include "geometry/lambert.h"
+#include "geometry/point_hash.h"
 #include "geometry/visible_region.h"
 
 namespace exitance {
 namespace {
 
-std::uint64_t mixed(std::uint64_t v) {  // splitmix64
-  v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9u;
-  v = (v ^ (v >> 27)) * 0x94d049bb133111ebu;
-  return v ^ (v >> 31);
-}
-std::uint64_t id_of(const Vec3& v) {
-  const auto bits = [](double c) { return std::bit_cast<std::uint64_t>(c + 0.0); };
-  return mixed(bits(v.x) + mixed(bits(v.y) + mixed(bits(v.z) + 1)));
-}
 constexpr std::uint64_t kHorizon = 1;
 /// The same for an edge from either end.
 std::uint64_t id_of(const ViewPlane& side) {
   switch (side.kind) {
     case ViewPlane::Kind::edge:
-      return mixed(id_of(*side.c) + id_of(*side.d));
+      return mixed_bits(hash_of(*side.c) + hash_of(*side.d));
     case ViewPlane::Kind::horizon:
       return 1;
     case ViewPlane::Kind::cut:
-      return mixed(id_of(*side.T->a) + 3 * id_of(*side.T->b) + 5 * id_of(*side.T->c));
+      return mixed_bits(hash_of(*side.T->a) + 3 * hash_of(*side.T->b) + 5 * hash_of(*side.T->c));
   }
   return 0;
 }
@@ -571,6 +562,14 @@ const StageCounts& Viewpoint::stage_counts() const {
 }
 std::uint64_t Viewpoint::extended_count() const {
   return state_->extended;
+}
+
+std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& source) {
+  std::vector<Vec3> corners(source.loop.begin(), source.loop.end());
+  if (corners.empty()) {
+    for (const Corner& c : soup.corners(soup.facets()[source.facet])) corners.push_back(c.at);
+  }
+  return corners;
 }
 
 double area(std::span<const BoundaryPiece> region) {

@@ -20,6 +20,9 @@ struct Source {
   std::span<const Vec3> loop;
 };
 
+/// The corners of a source, of whichever kind.
+std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& source);
+
 enum class Side : std::uint8_t { front, back, edge_on };
 
 enum class Visibility : std::uint8_t {

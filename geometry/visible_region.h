@@ -179,7 +179,7 @@ class VisibleRegion {
   std::uint32_t source_facet_ = kNone;
   const Plane* source_plane_ = nullptr;
   int facing_source_ = 1;
-  double per_bearable_angle_ = 0x1p46;
+  double per_bearable_angle_ = kFinestPerAngle;
   std::optional<std::span<const std::uint32_t>> added_only_;
   Cone<Real> source_;
   std::vector<std::unique_ptr<Added>> added_;  // count_ of them in use; they may point into themselves

@@ -1,19 +1,12 @@
 #include "src/form_factor/edge_event.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+
+#include "geometry/point_hash.h"
 
 namespace exitance {
 namespace {
-
-/// Odd, so that products tell.
-std::uint64_t id_of(const Vec3& v) {
-  std::uint64_t id = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    id = 0x9e3779b97f4a7c15u * (id ^ (id >> 29)) + std::bit_cast<std::uint64_t>(v[axis] + 0.0);
-  return 0xbf58476d1ce4e5b9u * (id ^ (id >> 32)) | 1;
-}
 
 /// Unit vectors that differ by no more are one direction.
 constexpr double kTouching = 1e-9;
@@ -140,7 +133,7 @@ std::vector<AreaCell> cut_beside(const AreaCell& cell, const EdgeEvent& event) {
 EdgeEvent::EdgeEvent(std::span<const SeenEdge, 3> edges) {
   for (std::size_t k = 0; k < 3; ++k) {
     line_[k] = {edges[k].a, edges[k].b};
-    id_ += id_of(edges[k].a) * id_of(edges[k].b);
+    id_ += (hash_of(edges[k].a) | 1) * (hash_of(edges[k].b) | 1);  // odd, so that products tell
   }
   for (std::size_t k = 0; k < 3 && !plane_; ++k) {
     const auto &one = line_[k], &other = line_[(k + 1) % 3], &third = line_[(k + 2) % 3];

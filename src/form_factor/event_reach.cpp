@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/form_factor/visual_events.h"
+#include "src/form_factor/visual_event.h"
 
 namespace exitance {
 namespace {

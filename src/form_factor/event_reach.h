@@ -2,6 +2,7 @@
 // Where along its trace on the receiver a visual event can be seen.
 
 #include <cstdint>
+#include <array>
 #include <span>
 #include <vector>
 

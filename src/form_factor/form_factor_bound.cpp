@@ -4,8 +4,6 @@
 #include <boost/math/constants/constants.hpp>
 #include <cmath>
 
-#include "src/form_factor/visual_events.h"
-
 namespace exitance {
 
 FormFactorBound::FormFactorBound(const PolygonSoup& soup, const Source& receiver, const Source& source)

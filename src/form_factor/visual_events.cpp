@@ -222,29 +222,6 @@ class EventCollector {
 
 }  // namespace
 
-bool VisualEvent::concerns(std::span<const Vec3> loop) const {
-  if (!crosses(loop, plane)) return false;
-  LineStretch chord;
-  Vec3 a = loop.back();
-  double at_a = plane.at(a);
-  for (const Vec3& b : loop) {
-    const double at_b = plane.at(b);
-    if (at_b == 0) chord.add(dot(along, b - plane.point));
-    if (at_a * at_b < 0) chord.add(dot(along, a + (at_a / (at_a - at_b)) * (b - a) - plane.point));
-    a = b;
-    at_a = at_b;
-  }
-  return chord.to >= stretch.from && chord.from <= stretch.to;
-}
-
-std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& piece) {
-  std::vector<Vec3> corners(piece.loop.begin(), piece.loop.end());
-  if (corners.empty()) {
-    for (const Corner& c : soup.corners(soup.facets()[piece.facet])) corners.push_back(c.at);
-  }
-  return corners;
-}
-
 std::vector<SeenEdge> edges_of(const PolygonSoup& soup, const Source& source, std::span<const std::uint32_t> items) {
   std::vector<SeenEdge> edges;
   const auto add = [&](const Outline& outline) {

@@ -7,23 +7,9 @@
 #include <vector>
 
 #include "geometry/viewpoint.h"
-#include "src/form_factor/sight_plane.h"
+#include "src/form_factor/visual_event.h"
 
 namespace exitance {
-
-/// A plane whose trace on the receiver matters only along a stretch, at the points x where dot(along, x − plane.point)
-/// lies in it.
-struct VisualEvent {
-  CutPlane plane;
-  Vec3 along;  ///< unit vector
-  LineStretch stretch{-INFINITY, INFINITY};
-
-  /// Whether the event may happen within a convex loop, at a line that cuts it.
-  bool concerns(std::span<const Vec3> loop) const;
-};
-
-/// The corners of a piece of a facet.
-std::vector<Vec3> corners_of(const PolygonSoup& soup, const Source& piece);
 
 /// The edges of a source and of what stands between.
 std::vector<SeenEdge> edges_of(const PolygonSoup& soup, const Source& source, std::span<const std::uint32_t> items);

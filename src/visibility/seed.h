@@ -3,14 +3,13 @@
 
 #include <cstdint>
 
+#include "geometry/point_hash.h"
+
 namespace exitance {
 
 /// Whitens a number (the output function of SplitMix64; Steele, Lea and Flood 2014).
 constexpr std::uint64_t mixed(std::uint64_t z) {
-  z += 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
+  return mixed_bits(z + 0x9e3779b97f4a7c15u);
 }
 
 /// Number k of the seeds that belong to one; to be mixed before its bits are used.
