@@ -52,27 +52,29 @@ void EditSession::change_geometry(DynamicRadiosity& of, std::uint32_t object, co
                      object, name);
 }
 
-/// The selected object where it is now, in a copy of the solution without it.
-void EditSession::open_temporary() {
+/// The object that is taken out of the solution as it is selected. From scratch there is nothing to hold.
+std::optional<std::uint32_t> EditSession::held() const {
+  return options_.method == UpdateMethod::scratch ? std::nullopt : scene_.selected();
+}
+
+/// An object that is held, where it is now, in a copy of the solution without it.
+void EditSession::open_temporary(std::uint32_t object) {
   shown_ = base_;
-  change_geometry(*shown_, *selected_, fmt::format("add {}", scene_.scene().objects[*selected_].name));
+  change_geometry(*shown_, object, fmt::format("add {}", scene_.scene().objects[object].name));
 }
 
 void EditSession::apply(const Edit& edit) {
-  const bool of_selected = selected_ == edit.object;
-  if (edit.operation == Operation::select && of_selected) return;
+  const std::optional<std::uint32_t> held_before = held();
+  const bool of_held = held_before == edit.object;
+  if (edit.operation == Operation::select && of_held) return;
   const EditedScene::Effect effect = scene_.apply(edit);
   edited_ = edit.object;
-  const bool holds = options_.method != UpdateMethod::scratch;
-  if (!holds && (edit.operation == Operation::select || edit.operation == Operation::deselect)) return;
   if (edit.operation == Operation::deselect || edit.operation == Operation::select) {
-    if (selected_) {
-      if (!shown_ && scene_.is_present(*selected_)) open_temporary();
+    if (held_before) {
+      if (!shown_) open_temporary(*held_before);
       if (shown_) base_ = *std::exchange(shown_, std::nullopt);
-      selected_.reset();
     }
-    if (edit.operation == Operation::deselect) return;
-    selected_ = edit.object;
+    if (!held()) return;
     // Taken out for now; where it stands is remembered by the scene.
     EditedScene with = scene_;
     scene_.apply({Operation::remove, edit.object, {}, {}, {}});
@@ -80,9 +82,8 @@ void EditSession::apply(const Edit& edit) {
     scene_ = std::move(with);
     return;
   }
-  if (of_selected) {
+  if (of_held) {
     shown_.reset();
-    if (edit.operation == Operation::remove) selected_.reset();
     return;
   }
   if (options_.method == UpdateMethod::scratch && effect.geometry) base_.start_over();
@@ -121,13 +122,13 @@ SessionWork EditSession::work(const Budget& budget) {
   const auto start = Clock::now();
   SessionWork work;
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-  const bool temporary = selected_ && scene_.is_present(*selected_);
+  const std::optional<std::uint32_t> temporary = held();
   for (;;) {
     if (budget.shots && work.propagations + work.redistributions >= *budget.shots) break;
     if (budget.seconds && seconds() >= *budget.seconds) break;
     if (temporary && !shown_) {
       const double left = base_.strongest_change().energy;
-      if (left < 0 || left < options_.threshold * base_.power_of_sources()) open_temporary();
+      if (left < 0 || left < options_.threshold * base_.power_of_sources()) open_temporary(*temporary);
     }
     if (!step(shown_ ? *shown_ : base_, work)) {
       if (temporary && !shown_) continue;
@@ -139,7 +140,7 @@ SessionWork EditSession::work(const Budget& budget) {
       break;
     }
   }
-  if (temporary && !shown_) open_temporary();
+  if (temporary && !shown_) open_temporary(*temporary);
   work.seconds = seconds();
   return work;
 }

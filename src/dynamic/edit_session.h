@@ -93,7 +93,8 @@ class EditSession {
  private:
   void change_geometry(DynamicRadiosity& of, std::uint32_t object, const std::string& name);
   bool step(DynamicRadiosity& of, SessionWork& work);
-  void open_temporary();
+  std::optional<std::uint32_t> held() const;
+  void open_temporary(std::uint32_t object);
   void set_options(const SessionOptions& options);
   std::string name_of_edit(const Edit& edit) const;
 
@@ -101,7 +102,6 @@ class EditSession {
   EditedScene scene_;
   DynamicRadiosity base_;                   ///< without the selected object, if there is one
   std::optional<DynamicRadiosity> shown_;   ///< with it
-  std::optional<std::uint32_t> selected_;
   std::optional<std::uint32_t> edited_;     ///< the object whose emitters come first
 };
 

@@ -76,6 +76,8 @@ class EditedScene {
   /// As it is now.
   const Scene& scene() const { return scene_; }
   bool is_present(std::uint32_t object) const { return present_[object]; }
+  /// The object that is selected.
+  std::optional<std::uint32_t> selected() const { return selected_; }
 
   /// The surfaces of an object that is there: first … last − 1.
   struct Range {
