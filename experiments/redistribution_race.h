@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
 #include "experiments/finer_radiosity.h"
 #include "experiments/plot_note.h"
 #include "src/dynamic/converged_reference.h"
@@ -309,18 +309,13 @@ class RaceTrack {
 template <class MakeRace>
 int run_race(int argc, char** argv, const char* what, const MakeRace& race) {
   CLI::App app{what};
-  std::string out, expected;
-  bool reduced = false;
-  app.add_option("-o,--output", out, "Folder for tables, plots and pictures");
-  app.add_flag("--reduced", reduced, "A small mesh");
-  app.add_option("--check", expected, "Compare errors with this table; exit code 1 where they differ");
+  ExperimentOptions wanted(app, "tables, plots and pictures", "A small mesh",
+                                "Compare errors with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
-  if (!out.empty()) std::filesystem::create_directories(out);
-  RaceTrack track(race(reduced), out);
+  RaceTrack track(race(wanted.reduced()), wanted.writes() ? wanted.folder() : std::filesystem::path());
   track.run();
-  if (expected.empty()) return 0;
-  return verdict(differences(track.results, CsvTable::read(expected), 2, 0.02,
-                             {"cpu_seconds", "redistribution_tests", "idle_tests", "idle_patch_tests"}));
+  return wanted.check(track.results, 2, 0.02,
+                             {"cpu_seconds", "redistribution_tests", "idle_tests", "idle_patch_tests"});
 }
 
 }  // namespace exitance

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
 #include "experiments/plot_note.h"
 #include "experiments/power_law.h"
 #include "src/form_factor/point_rows.h"
@@ -98,24 +98,19 @@ std::vector<std::string> what_is_wrong(const CsvTable& found, const CsvTable& ex
 
 int run(int argc, char** argv) {
   CLI::App app{"Rows of furnished rooms by rays that are told of contacts and by rays that are not"};
-  std::string out, expected;
-  bool reduced = false;
-  app.add_option("-o,--output", out, "Folder for results.csv and plot.svg");
-  app.add_flag("--reduced", reduced, "The smaller room, few rays");
-  app.add_option("--check", expected, "Compare errors with this table; exit code 1 where they differ");
+  ExperimentOptions wanted(app, "results.csv and plot.svg", "The smaller room, few rays",
+                           "Compare errors with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
   CsvTable table{
       {"polygons", "rays_of", "rays", "points", "covered_points", "rms_error", "rms_of_covered", "rms_of_others"}, {}};
   Plot plot{"Rows of a furnished room of 500 polygons", "rays", "rms error of form factors"};
   plot.note = plot_note();
-  answer(reduced ? 100 : 500, reduced ? 256 : 4096, table, plot);
-  if (!out.empty()) {
-    std::filesystem::create_directories(out);
-    table.write(std::filesystem::path(out) / "results.csv");
-    write_plot(std::filesystem::path(out) / "plot.svg", plot);
+  answer(wanted.reduced() ? 100 : 500, wanted.reduced() ? 256 : 4096, table, plot);
+  if (wanted.writes()) {
+    table.write(wanted.folder() / "results.csv");
+    write_plot(wanted.folder() / "plot.svg", plot);
   }
-  if (expected.empty()) return 0;
-  return verdict(what_is_wrong(table, CsvTable::read(expected)));
+  return wanted.check([&](const CsvTable& expected) { return what_is_wrong(table, expected); });
 }
 
 }  // namespace

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
 #include "experiments/plot_note.h"
 #include "src/stress/stress_table.h"
 
@@ -34,14 +34,12 @@ void add_rows(const StressReport& report, std::uint64_t count, CsvTable& table) 
 
 int run(int argc, char** argv) {
   CLI::App app{"Degenerate questions, put to exact visibility, to plain doubles, to rays and to CGAL's EPECK"};
-  std::string out, expected;
-  bool reduced = false;
-  app.add_option("-o,--output", out, "Folder for results.csv and plot.svg");
-  app.add_flag("--reduced", reduced, "Few questions, and neither rays nor EPECK");
-  app.add_option("--check", expected, "Compare counts with this table; exit code 1 where they differ");
+  ExperimentOptions wanted(app, "results.csv and plot.svg", "Few questions, and neither rays nor EPECK",
+                           "Compare counts with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
-  const Asked asked = reduced ? Asked{{"exact", "plain-double"}, 348}
-                              : Asked{{"exact", "plain-double", "rays:1024", "rays:1024:fast", "cgal-epeck"}, 8700};
+  const Asked asked = wanted.reduced()
+                          ? Asked{{"exact", "plain-double"}, 348}
+                          : Asked{{"exact", "plain-double", "rays:1024", "rays:1024:fast", "cgal-epeck"}, 8700};
   StressOptions options;
   options.count = asked.count;
   options.failures_kept = 0;
@@ -57,14 +55,11 @@ int run(int argc, char** argv) {
                t.wrong, t.questions, t.worst_error, t.broken(), t.tried(),
                1e6 * t.seconds / static_cast<double>(t.questions));
   }
-  if (!out.empty()) {
-    std::filesystem::create_directories(out);
-    table.write(std::filesystem::path(out) / "results.csv");
-    write_stress_map(std::filesystem::path(out) / "plot.svg", report, asked.contenders, plot_note());
+  if (wanted.writes()) {
+    table.write(wanted.folder() / "results.csv");
+    write_stress_map(wanted.folder() / "plot.svg", report, asked.contenders, plot_note());
   }
-  if (expected.empty()) return 0;
-  return verdict(differences(table, CsvTable::read(expected), 4, 0,
-                             {"worst_error", "worst_relative_error", "worst_defect", "microseconds_each"}));
+  return wanted.check(table, 4, 0, {"worst_error", "worst_relative_error", "worst_defect", "microseconds_each"});
 }
 
 }  // namespace

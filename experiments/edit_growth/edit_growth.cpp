@@ -4,7 +4,6 @@
 #include <malloc.h>
 #include <tbb/global_control.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
 #include "experiments/plot_note.h"
 #include "experiments/power_law.h"
 #include "src/dynamic/edit_session.h"
@@ -158,18 +158,15 @@ Growth measure(Family family, std::uint32_t polygons) {
 
 int run(int argc, char** argv) {
   CLI::App app{"Time and memory of the same edit in rooms of ever more patches"};
-  std::string out, expected;
-  bool reduced = false;
-  app.add_option("-o,--output", out, "Folder for the table and the plot");
-  app.add_flag("--reduced", reduced, "Small rooms only");
-  app.add_option("--check", expected, "Compare counts with this table; exit code 1 where they differ");
+  ExperimentOptions wanted(app, "the table and the plot", "Small rooms only",
+                           "Compare counts with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
   CsvTable table{
       {"rooms", "patches", "remade", "candidates", "tests", "edit_ms", "edit_kilobytes", "order_ms", "shots_ms"}, {}};
   Plot plot{"The same object moves in rooms of ever more patches", "patches", "processor time [ms], memory [MB]"};
   const std::vector<std::uint32_t> sizes =
-      reduced ? std::vector<std::uint32_t>{1000, 2000}
-              : std::vector<std::uint32_t>{1000, 2000, 4000, 8000, 15000, 30000, 60000};
+      wanted.reduced() ? std::vector<std::uint32_t>{1000, 2000}
+                       : std::vector<std::uint32_t>{1000, 2000, 4000, 8000, 15000, 30000, 60000};
   for (const Family family : {Family::detail, Family::row}) {
     PlotSeries edits{fmt::format("{}: an edit [ms]", name_of(family)), {}};
     PlotSeries shots{fmt::format("{}: its order and its {} shots [ms]", name_of(family), kShotsBefore), {}};
@@ -191,15 +188,12 @@ int run(int argc, char** argv) {
       plot.series.push_back(series);
     }
   }
-  if (!out.empty()) {
-    std::filesystem::create_directories(out);
-    table.write(std::filesystem::path(out) / "results.csv");
+  if (wanted.writes()) {
+    table.write(wanted.folder() / "results.csv");
     plot.note = plot_note();
-    write_plot(std::filesystem::path(out) / "plot.svg", plot);
+    write_plot(wanted.folder() / "plot.svg", plot);
   }
-  if (expected.empty()) return 0;
-  return verdict(
-      differences(table, CsvTable::read(expected), 2, 0.001, {"edit_ms", "edit_kilobytes", "order_ms", "shots_ms"}));
+  return wanted.check(table, 2, 0.001, {"edit_ms", "edit_kilobytes", "order_ms", "shots_ms"});
 }
 
 }  // namespace

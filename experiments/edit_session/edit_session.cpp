@@ -1,17 +1,18 @@
 // A cube is dragged across the table for 60 frames, with so many shots a frame: how wrong is what is shown, with the
 // log of changes and without it?
 
+#include "src/dynamic/edit_session.h"
+
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
 #include "experiments/plot_note.h"
 #include "src/dynamic/converged_reference.h"
-#include "src/dynamic/edit_session.h"
 #include "src/output/plot.h"
 #include "src/output/run_clock.h"
 #include "src/scene/scene_file.h"
@@ -47,7 +48,6 @@ Drag drag(bool reduced) {
   return drag;
 }
 
-
 enum class Way { log, no_log, selected };
 
 const char* name_of(Way way) {
@@ -56,7 +56,8 @@ const char* name_of(Way way) {
 
 class Frames {
  public:
-  Frames(const Drag& drag, const SessionOptions& options) : drag_(drag), options_(options), first_(drag.scene, options) {
+  Frames(const Drag& drag, const SessionOptions& options)
+      : drag_(drag), options_(options), first_(drag.scene, options) {
     first_.work({});
     EditSession exact(first_, options);
     references_.push_back(converged_reference(exact.solution()));
@@ -117,13 +118,10 @@ class Frames {
 
 int run(int argc, char** argv) {
   CLI::App app{"Error over the frames of a dragged object, by budget, with and without the log"};
-  std::string out, expected;
-  bool reduced = false;
-  app.add_option("-o,--output", out, "Folder for tables and the plot");
-  app.add_flag("--reduced", reduced, "A small mesh and few frames");
-  app.add_option("--check", expected, "Compare errors with this table; exit code 1 where they differ");
+  ExperimentOptions wanted(app, "tables and the plot", "A small mesh and few frames",
+                           "Compare errors with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
-  const Drag dragged = drag(reduced);
+  const Drag dragged = drag(wanted.reduced());
   SessionOptions options;
   options.mesh = dragged.mesh;
   options.tolerance = 1e-9;
@@ -136,18 +134,17 @@ int run(int argc, char** argv) {
                    {}};
   Plot plot{"A cube is dragged across the table", "frame", "error (eq. 7) over all elements"};
   plot.note = plot_note();
-  for (const std::uint64_t shots : reduced ? std::vector<std::uint64_t>{5, 50} : std::vector<std::uint64_t>{10, 50, 250}) {
+  for (const std::uint64_t shots :
+       wanted.reduced() ? std::vector<std::uint64_t>{5, 50} : std::vector<std::uint64_t>{10, 50, 250}) {
     for (const Way way : {Way::log, Way::no_log, Way::selected}) frames.run(way, shots, table, summary, plot);
   }
-  if (!out.empty()) {
-    const std::filesystem::path folder(out);
-    std::filesystem::create_directories(folder);
+  if (wanted.writes()) {
+    const std::filesystem::path folder = wanted.folder();
     table.write(folder / "results.csv");
     summary.write(folder / "summary.csv");
     write_plot(folder / "plot.svg", plot);
   }
-  if (expected.empty()) return 0;
-  return verdict(differences(table, CsvTable::read(expected), 3, 0.02, {}));
+  return wanted.check(table, 3, 0.02, {});
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
 #include "experiments/plot_note.h"
 #include "src/output/heat_map.h"
 #include "src/scene/patch_mesh.h"
@@ -275,38 +275,35 @@ HeatMap picture(const CsvTable& table) {
   return map;
 }
 
-int run(int argc, char** argv) {
-  CLI::App app{"Light through closed surfaces"};
-  std::string out, expected;
-  bool reduced = false;
-  app.add_option("-o,--output", out, "Folder for results.csv and plot.svg");
-  app.add_flag("--reduced", reduced, "Fewer points in the room");
-  app.add_option("--check", expected, "What exact visibility and robust rays let through must be as little as there");
-  CLI11_PARSE(app, argc, argv);
-  CsvTable table{{"kind", "method", "mean_leak", "largest_leak", "closure_defect"}, {}};
-  for (const Kind& kind : kinds()) answer(kind, reduced ? 2 : 1, table);
-  if (!out.empty()) {
-    std::filesystem::create_directories(out);
-    table.write(std::filesystem::path(out) / "results.csv");
-    write_heat_map(std::filesystem::path(out) / "plot.svg", picture(table));
-  }
-  if (expected.empty()) return 0;
-  int wrong = 0;
-  const CsvTable before = CsvTable::read(expected);
-  for (const auto& row : table.rows) {
-    const auto match =
-        std::ranges::find_if(before.rows, [&](const auto& other) { return other[0] == row[0] && other[1] == row[1]; });
-    const bool is_known = match != before.rows.end();
-    // Exactly nothing may leak, up to the rounding of the coordinates [m], which is as much of the room's size. How
-    // many rays pass differs from processor to processor.
+/// Exactly nothing may leak, up to the rounding of the coordinates [m], which is as much of the room's size. How many
+/// rays pass differs from processor to processor.
+std::vector<std::string> leaks_that_are_new(const CsvTable& found, const CsvTable& expected) {
+  std::vector<std::string> wrong;
+  for (const auto& row : found.rows) {
+    const auto match = std::ranges::find_if(
+        expected.rows, [&](const auto& other) { return other[0] == row[0] && other[1] == row[1]; });
+    const bool is_known = match != expected.rows.end();
     const auto at_most = [&](std::size_t column, double limit) { return std::stod(row[column]) <= limit; };
     const double rounding = 1e-12 + 0x1p-53 * offset_of(row[0]);
     const bool holds = is_known && (row[1] == "exact" ? at_most(3, 1e-12) && at_most(4, rounding)
                                                       : at_most(3, std::max(4 * std::stod((*match)[3]), 1e-12)));
-    if (!holds) fmt::print(stderr, "{}, {}: {} leaks, defect {}\n", row[0], row[1], row[3], row[4]);
-    wrong += !holds;
+    if (!holds) wrong.push_back(fmt::format("{}, {}: {} leaks, defect {}", row[0], row[1], row[3], row[4]));
   }
-  return wrong == 0 ? 0 : 1;
+  return wrong;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Light through closed surfaces"};
+  ExperimentOptions wanted(app, "results.csv and plot.svg", "Fewer points in the room",
+                           "What exact visibility and robust rays let through must be as little as there");
+  CLI11_PARSE(app, argc, argv);
+  CsvTable table{{"kind", "method", "mean_leak", "largest_leak", "closure_defect"}, {}};
+  for (const Kind& kind : kinds()) answer(kind, wanted.reduced() ? 2 : 1, table);
+  if (wanted.writes()) {
+    table.write(wanted.folder() / "results.csv");
+    write_heat_map(wanted.folder() / "plot.svg", picture(table));
+  }
+  return wanted.check([&](const CsvTable& expected) { return leaks_that_are_new(table, expected); });
 }
 
 }  // namespace

@@ -3,18 +3,17 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
+#include "experiments/link_scene.h"
 #include "experiments/plot_note.h"
 #include "experiments/power_law.h"
-#include "src/links/linked_radiosity.h"
 #include "src/output/plot.h"
-#include "src/scene/scene_file.h"
 
 namespace exitance {
 namespace {
@@ -32,27 +31,14 @@ struct Tables {
 };
 
 void measure(const Series& series, bool reduced, Tables& tables) {
-  const DynamicScene given = read_dynamic_scene(
-      std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / (series.scene + ".toml"), Emission::exitance);
-  std::vector<Edit> edits;
-  std::vector<std::uint8_t> moves(given.scene.objects.size());
-  for (const Event& event : given.events) {
-    if (event.time != given.events.front().time) break;  // what happens at once is one edit
-    edits.push_back(event.edit);
-    moves[event.edit.object] = 1;
-  }
+  const LinkScene scene(series.scene);
   Curve build, hvt;
   for (const double share : series.shares) {
-    LinkOptions options;
-    options.eps2 = *given.links.eps2 * share;
-    options.eps1 = options.eps2 / 2;
-    options.smallest_area = *given.links.smallest_area * share;
-    options.tolerance = 1e-5;
-    LinkedRadiosity radiosity(given.scene, options);
+    LinkedRadiosity radiosity(scene.given.scene, scene.options(share, share));
     const LinkUpdate built = radiosity.build();
-    const LinkCounts counts = radiosity.links().count(radiosity.tree(), moves);
+    const LinkCounts counts = radiosity.links().count(radiosity.tree(), scene.moves);
     const auto sub_patches = std::ranges::count(radiosity.nodes_in_use(), 1);
-    const LinkUpdate edited = radiosity.update(edits, LinkMethod::hvt);
+    const LinkUpdate edited = radiosity.update(scene.edits, LinkMethod::hvt);
     const auto links = static_cast<double>(counts.links());
     const auto part = [&](std::uint64_t n) { return digits(static_cast<double>(n) / links); };
     tables.links.rows.push_back({reduced ? series.scene + " reduced" : series.scene, digits(share),
@@ -72,29 +58,23 @@ void measure(const Series& series, bool reduced, Tables& tables) {
 
 int run(int argc, char** argv) {
   CLI::App app{"Building and updating links, from 10,000 to 10,000,000"};
-  std::string out, expected;
-  bool reduced = false;
-  app.add_option("-o,--output", out, "Folder for results.csv and plot.svg");
-  app.add_flag("--reduced", reduced, "Box only, with few links");
-  app.add_option("--check", expected, "Compare counts and shares with this table; exit code 1 where they differ");
+  ExperimentOptions wanted(app, "results.csv and plot.svg", "Box only, with few links",
+                           "Compare counts and shares with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   Tables tables;
   tables.plot.note = plot_note();
-  if (reduced) {
-    measure({"box", {8, 4}}, reduced, tables);
+  if (wanted.reduced()) {
+    measure({"box", {8, 4}}, wanted.reduced(), tables);
   } else {
-    measure({"box", {4, 2, 1, 0.5, 0.25, 0.115}}, reduced, tables);
-    measure({"hall", {4, 1, 0.5, 0.25, 0.18}}, reduced, tables);
+    measure({"box", {4, 2, 1, 0.5, 0.25, 0.115}}, wanted.reduced(), tables);
+    measure({"hall", {4, 1, 0.5, 0.25, 0.18}}, wanted.reduced(), tables);
   }
-  if (!out.empty()) {
-    std::filesystem::create_directories(out);
-    tables.links.write(std::filesystem::path(out) / "results.csv");
-    write_plot(std::filesystem::path(out) / "plot.svg", tables.plot);
+  if (wanted.writes()) {
+    tables.links.write(wanted.folder() / "results.csv");
+    write_plot(wanted.folder() / "plot.svg", tables.plot);
   }
-  if (expected.empty()) return 0;
-  return verdict(differences(tables.links, CsvTable::read(expected), 2, 0.02,
-                             {"seconds_build", "links_per_second", "seconds_hvt"}));
+  return wanted.check(tables.links, 2, 0.02, {"seconds_build", "links_per_second", "seconds_hvt"});
 }
 
 }  // namespace

@@ -4,16 +4,15 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
+#include "experiments/link_scene.h"
 #include "experiments/plot_note.h"
-#include "src/links/linked_radiosity.h"
 #include "src/output/plot.h"
-#include "src/scene/scene_file.h"
 
 namespace exitance {
 namespace {
@@ -24,21 +23,8 @@ struct Way {
   double B_eps = 0;
 };
 
-LinkOptions options_of(const DynamicScene& given, bool reduced) {
-  LinkOptions options;
-  options.eps2 = *given.links.eps2 * (reduced ? 8 : 1);
-  options.eps1 = options.eps2 / 2;
-  options.smallest_area = *given.links.smallest_area * (reduced ? 4 : 1);
-  options.tolerance = 1e-5;
-  return options;
-}
-
-std::vector<Edit> first_edits(const DynamicScene& given) {
-  std::vector<Edit> edits;
-  for (const Event& event : given.events) {
-    if (event.time == given.events.front().time) edits.push_back(event.edit);
-  }
-  return edits;
+LinkOptions options_of(const LinkScene& scene, bool reduced) {
+  return reduced ? scene.options(8, 4) : scene.options(1, 1);
 }
 
 /// By node of `links`, B of the same node of links that are refined further.
@@ -85,40 +71,36 @@ struct Tables {
 
 /// The first edit of a scene by each way, from the same links.
 void update(const std::string& name, bool reduced, Tables& tables) {
-  const DynamicScene given =
-      read_dynamic_scene(std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / (name + ".toml"), Emission::exitance);
-  const std::vector<Edit> edits = first_edits(given);
-  std::vector<std::uint8_t> moves(given.scene.objects.size());
-  for (const Edit& edit : edits) moves[edit.object] = 1;
+  const LinkScene scene(name);
   std::vector<Way> ways = {{"direct", LinkMethod::direct}, {"rebuild", LinkMethod::rebuild}, {"hvt", LinkMethod::hvt}};
   for (const double share : {0.0, 0.1, 0.3, 1.0, 3.0, 10.0})  // of eps2
-    ways.push_back({fmt::format("hvt-peu {:g}", share), LinkMethod::hvt_peu, share * options_of(given, reduced).eps2});
+    ways.push_back({fmt::format("hvt-peu {:g}", share), LinkMethod::hvt_peu, share * options_of(scene, reduced).eps2});
 
-  LinkOptions finer_options = options_of(given, reduced);
+  LinkOptions finer_options = options_of(scene, reduced);
   finer_options.eps2 /= 3;
   finer_options.eps1 /= 3;
   finer_options.smallest_area /= 4;
-  LinkedRadiosity finer(given.scene, finer_options);
+  LinkedRadiosity finer(scene.given.scene, finer_options);
   finer.build();
-  finer.update(edits, LinkMethod::rebuild);
+  finer.update(scene.edits, LinkMethod::rebuild);
 
   const std::string label = reduced ? name + " reduced" : name;
   double direct_seconds = 0;
   PlotSeries curve{name + ", hvt-peu", {}};
   for (const Way& way : ways) {
-    LinkOptions options = options_of(given, reduced);
+    LinkOptions options = options_of(scene, reduced);
     options.B_eps = way.B_eps;
-    LinkedRadiosity links(given.scene, options);
+    LinkedRadiosity links(scene.given.scene, options);
     links.build();
     const std::vector<double> before(links.radiosity().B().begin(), links.radiosity().B().end());
-    const LinkUpdate done = links.update(edits, way.method);
+    const LinkUpdate done = links.update(scene.edits, way.method);
     const std::vector<double> reference = links.converged(), truth = at_nodes_of(links, finer);
     const std::vector<std::uint32_t> elements = links.elements();
     const auto error_of = [&](std::span<const double> to, std::span<const double> B) {
       return link_error(links.tree(), elements, links.radiosity().bands(), to, before, B);
     };
     const ConvergenceError error = error_of(reference, links.radiosity().B());
-    const LinkCounts counts = links.links().count(links.tree(), moves);
+    const LinkCounts counts = links.links().count(links.tree(), scene.moves);
     const auto used = links.nodes_in_use();
     if (way.method == LinkMethod::direct) direct_seconds = done.cpu_seconds;
     const SightWork& sight = done.work.sight;
@@ -152,27 +134,22 @@ void update(const std::string& name, bool reduced, Tables& tables) {
 
 int run(int argc, char** argv) {
   CLI::App app{"An edit of Box and Hall by Direct, HVT and HVT + PEU"};
-  std::string out, expected;
-  bool reduced = false;
-  app.add_option("-o,--output", out, "Folder for results.csv and plot.svg");
-  app.add_flag("--reduced", reduced, "Box only, with few links");
-  app.add_option("--check", expected, "Compare counts and errors with this table; exit code 1 where they differ");
+  ExperimentOptions wanted(app, "results.csv and plot.svg", "Box only, with few links",
+                           "Compare counts and errors with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   Tables tables;
   tables.plot.note = plot_note();
-  update("box", reduced, tables);
-  if (!reduced) update("hall", reduced, tables);
-  if (!out.empty()) {
-    std::filesystem::create_directories(out);
-    tables.updates.write(std::filesystem::path(out) / "results.csv");
-    write_plot(std::filesystem::path(out) / "plot.svg", tables.plot);
+  update("box", wanted.reduced(), tables);
+  if (!wanted.reduced()) update("hall", wanted.reduced(), tables);
+  if (wanted.writes()) {
+    tables.updates.write(wanted.folder() / "results.csv");
+    write_plot(wanted.folder() / "plot.svg", tables.plot);
   }
-  if (expected.empty()) return 0;
-  return verdict(differences(tables.updates, CsvTable::read(expected), 2, 0.05,
-                             // What is converged differs from its reference by the tolerance, or by roundings.
-                             {"error", "error_worst_1_percent", "seconds", "times_faster", "seconds_form_factors",
-                              "seconds_visibility", "seconds_shafts", "seconds_exchange"}));
+  return wanted.check(tables.updates, 2, 0.05,
+                      // What is converged differs from its reference by the tolerance, or by roundings.
+                      {"error", "error_worst_1_percent", "seconds", "times_faster", "seconds_form_factors",
+                       "seconds_visibility", "seconds_shafts", "seconds_exchange"});
 }
 
 }  // namespace

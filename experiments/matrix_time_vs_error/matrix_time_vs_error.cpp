@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
 #include "experiments/matrix_time_vs_error/matrix_truth.h"
 #include "experiments/plot_note.h"
 #include "experiments/power_law.h"
@@ -117,13 +117,10 @@ void answer(const Subject& subject, bool reduced, CsvTable& table, CsvTable& tru
 
 int ask(int argc, char** argv) {
   CLI::App app{"Error against time of whole matrices of form factors"};
-  std::string out, expected;
   std::vector<std::string> names;
-  bool reduced = false;
   app.add_option("--scene", names, "Only these");
-  app.add_option("-o,--output", out, "Folder for results.csv, truth.csv and plots");
-  app.add_flag("--reduced", reduced, "The first scene, few rays");
-  app.add_option("--check", expected, "Compare errors with this table; exit code 1 where they differ");
+  ExperimentOptions wanted(app, "results.csv, truth.csv and plots", "The first scene, few rays",
+                           "Compare errors with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   CsvTable table{{"scene", "method", "rays_or_tolerance", "patches", "rms_error", "largest_error", "largest_of_999",
@@ -137,27 +134,27 @@ int ask(int argc, char** argv) {
     if (!names.empty() && std::ranges::find(names, subject.name) == names.end()) continue;
     Plot plot{subject.name, "seconds of one thread", "rms error of pairs that face each other"};
     plot.note = plot_note();
-    answer(subject, reduced, table, truths, plot);
-    if (!out.empty()) {  // after each scene, as they take long
-      std::filesystem::create_directories(out);
-      table.write(std::filesystem::path(out) / "results.csv");
-      truths.write(std::filesystem::path(out) / "truth.csv");
-      write_plot(std::filesystem::path(out) / fmt::format("plot_{}.svg", drawn), plot);
+    answer(subject, wanted.reduced(), table, truths, plot);
+    if (wanted.writes()) {  // after each scene, as they take long
+      table.write(wanted.folder() / "results.csv");
+      truths.write(wanted.folder() / "truth.csv");
+      write_plot(wanted.folder() / fmt::format("plot_{}.svg", drawn), plot);
     }
-    if (reduced) break;
+    if (wanted.reduced()) break;
   }
-  if (expected.empty()) return 0;
-  // What exact visibility errs by is rounding and luck; it must only be as small as it says.
-  std::vector<std::string> wrong;
-  for (const auto& row : table.rows) {
-    if (row[1] == "exact" && std::stod(row[5]) > std::stod(row[2])) wrong.push_back(row[2] + " is not reached");
-  }
-  std::erase_if(table.rows, [](const auto& row) { return row[1] == "exact"; });
-  for (const std::string& line :
-       differences(table, CsvTable::read(expected), 4, 0.25,
-                   {"largest_error", "largest_of_999", "largest_of_open", "queries", "cpu_seconds"}))
-    wrong.push_back(line);
-  return verdict(wrong);
+  return wanted.check([&](const CsvTable& expected) {
+    // What exact visibility errs by is rounding and luck; it must only be as small as it says.
+    std::vector<std::string> wrong;
+    for (const auto& row : table.rows) {
+      if (row[1] == "exact" && std::stod(row[5]) > std::stod(row[2])) wrong.push_back(row[2] + " is not reached");
+    }
+    std::erase_if(table.rows, [](const auto& row) { return row[1] == "exact"; });
+    for (const std::string& line :
+         differences(table, expected, 4, 0.25,
+                     {"largest_error", "largest_of_999", "largest_of_open", "queries", "cpu_seconds"}))
+      wrong.push_back(line);
+    return wrong;
+  });
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <time.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
 #include "src/form_factor/pair_form_factor.h"
 #include "src/output/plot.h"
 #include "tests/form_factor/exchange_scenes.h"
@@ -119,26 +119,21 @@ std::vector<std::string> worse_than(const CsvTable& found, const CsvTable& expec
 
 int run(int argc, char** argv) {
   CLI::App app{"Error against time of form factors between patches"};
-  std::string out, expected;
-  bool reduced = false;
-  app.add_option("-o,--output", out, "Folder for results.csv and plot.svg");
-  app.add_flag("--reduced", reduced, "The first scene at two tolerances only");
-  app.add_option("--check", expected, "Compare errors with this table; exit code 1 where they are ten times larger");
+  ExperimentOptions wanted(app, "results.csv and plot.svg", "The first scene at two tolerances only",
+                           "Compare errors with this table; exit code 1 where they are ten times larger");
   CLI11_PARSE(app, argc, argv);
   CsvTable table{
       {"scene", "tolerance", "pairs", "largest_error", "mean_error", "beyond_F_error", "points", "seconds_a_pair"}, {}};
   Plot plot{"Form factors between patches", "seconds a pair (one thread)", "largest error", {}};
   for (const char* name : kScenes) {
-    answer(name, reduced, table, plot);
-    if (!out.empty()) {  // after each scene, as they take long
-      std::filesystem::create_directories(out);
-      table.write(std::filesystem::path(out) / "results.csv");
-      write_plot(std::filesystem::path(out) / "plot.svg", plot);
+    answer(name, wanted.reduced(), table, plot);
+    if (wanted.writes()) {  // after each scene, as they take long
+      table.write(wanted.folder() / "results.csv");
+      write_plot(wanted.folder() / "plot.svg", plot);
     }
-    if (reduced) break;
+    if (wanted.reduced()) break;
   }
-  if (expected.empty()) return 0;
-  return verdict(worse_than(table, CsvTable::read(expected)));
+  return wanted.check([&](const CsvTable& expected) { return worse_than(table, expected); });
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <random>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
 #include "experiments/plot_note.h"
 #include "experiments/power_law.h"
 #include "src/output/plot.h"
@@ -172,39 +172,33 @@ void answer(std::int64_t triangles, std::size_t count, std::uint32_t most_rays, 
 
 int run(int argc, char** argv) {
   CLI::App app{"Error against time of form factors from a point to a polygon seen in part"};
-  std::string out, expected;
   std::vector<std::int64_t> rooms{500, 25'000, 1'000'000};
   std::size_t count = 100;
-  bool reduced = false;
-  app.add_option("-o,--output", out, "Folder for results.csv, prices.csv and plots");
   app.add_option("--triangles", rooms, "Of each room, about")->delimiter(',')->capture_default_str();
   app.add_option("--queries", count, "In each room")->capture_default_str();
-  app.add_flag("--reduced", reduced, "The first room only, up to 1,024 rays");
-  app.add_option("--check", expected, "Compare errors with this table; exit code 1 where they differ");
+  ExperimentOptions wanted(app, "results.csv, prices.csv and plots", "The first room only, up to 1,024 rays",
+                           "Compare errors with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
   CsvTable table{
       {"triangles", "method", "rays", "queries", "rms_error", "largest_error", "claimed_error", "seconds_a_query"}, {}};
   CsvTable prices{{"triangles", "method", "power_of_N", "exact_costs_rays", "error_at_exact_price", "price_at_1e-2",
                    "price_at_1e-3", "price_at_1e-4"},
                   {}};
-  if (reduced) rooms.resize(1);
+  if (wanted.reduced()) rooms.resize(1);
   for (const std::int64_t triangles : rooms) {
     Plot plot{fmt::format("Partly visible polygons in a room of {} triangles", triangles),
               "seconds a query (one thread)", "rms error / unoccluded form factor"};
     plot.note = plot_note();
-    answer(triangles, count, reduced ? 1024 : kMostRays, table, prices, out.empty() ? nullptr : &plot);
-    if (out.empty()) continue;
-    const std::filesystem::path folder(out);
-    std::filesystem::create_directories(folder);
+    answer(triangles, count, wanted.reduced() ? 1024 : kMostRays, table, prices, wanted.writes() ? &plot : nullptr);
+    if (!wanted.writes()) continue;
+    const std::filesystem::path folder = wanted.folder();
     table.write(folder / "results.csv");
     prices.write(folder / "prices.csv");
     write_plot(folder / fmt::format("plot_{}.svg", triangles), plot);
   }
-  if (expected.empty()) return 0;
   // Proven bounds are no errors. Embree's arithmetic may differ between processors: single rays at edges count.
   std::erase_if(table.rows, [](const auto& row) { return row[1] == "exact"; });
-  return verdict(
-      differences(table, CsvTable::read(expected), 4, 0.25, {"largest_error", "claimed_error", "seconds_a_query"}));
+  return wanted.check(table, 4, 0.25, {"largest_error", "claimed_error", "seconds_a_query"});
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
 #include "src/form_factor/pair_form_factor.h"
 #include "src/form_factor/visual_events.h"
 #include "src/output/plot.h"
@@ -137,13 +137,10 @@ void compare_shooting(const Question& question, CsvTable& table) {
 
 int run(int argc, char** argv) {
   CLI::App app{"Refinement level against error; independent routes"};
-  std::string out, expected;
   std::vector<std::string> scenes;
-  bool reduced = false;
   app.add_option("--scene", scenes, "Only these");
-  app.add_option("-o,--output", out, "Folder for levels.csv, routes.csv and plot.svg");
-  app.add_flag("--reduced", reduced, "Two levels of the first scene only");
-  app.add_option("--check", expected, "Compare levels with this table; exit code 1 where they differ");
+  ExperimentOptions wanted(app, "levels.csv, routes.csv and plot.svg", "Two levels of the first scene only",
+                           "Compare levels with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
   CsvTable levels{{"scene", "level", "patches", "elements", "estimated", "form_factors", "order", "to_finest_pointwise",
                    "to_finest_means", "seconds"},
@@ -151,28 +148,25 @@ int run(int argc, char** argv) {
   CsvTable routes{{"scene", "route", "value"}, {}};
   Plot plot{"Error of reference solutions (eq. 7, pointwise)", "elements", "error", {}};
   const auto write = [&] {  // after each scene, as they take long
-    if (out.empty()) return;
-    const std::filesystem::path folder(out);
-    std::filesystem::create_directories(folder);
+    if (!wanted.writes()) return;
+    const std::filesystem::path folder = wanted.folder();
     levels.write(folder / "levels.csv");
     routes.write(folder / "routes.csv");
     write_plot(folder / "plot.svg", plot);
   };
   for (const Question& question : questions()) {
     if (!scenes.empty() && std::ranges::find(scenes, question.name) == scenes.end()) continue;
-    if (!reduced) {
+    if (!wanted.reduced()) {
       compare_shooting(question, routes);
       compare_with_rays(question, 30, routes);
     }
-    converge(question, reduced ? 2 : question.levels, levels, plot);
+    converge(question, wanted.reduced() ? 2 : question.levels, levels, plot);
     write();
-    if (reduced) break;
+    if (wanted.reduced()) break;
   }
-  if (expected.empty()) return 0;
   // The last level here is not the last one there: distances to it differ. What errors of form factors do is no more
   // than an estimate of how much better they could be.
-  return verdict(differences(levels, CsvTable::read(expected), 2, 1e-2,
-                             {"form_factors", "to_finest_pointwise", "to_finest_means", "seconds"}));
+  return wanted.check(levels, 2, 1e-2, {"form_factors", "to_finest_pointwise", "to_finest_means", "seconds"});
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "experiments/csv_table.h"
+#include "experiments/experiment_options.h"
 #include "experiments/plot_note.h"
 #include "experiments/power_law.h"
 #include "src/output/plot.h"
@@ -112,33 +112,28 @@ void answer(const Subject& subject, CsvTable& table, Plot& plot) {
 
 int run(int argc, char** argv) {
   CLI::App app{"Error of the radiosity against the time of the whole solution"};
-  std::string out, expected;
   std::vector<std::string> names;
-  bool reduced = false;
   app.add_option("--scene", names, "Only these");
-  app.add_option("-o,--output", out, "Folder for results.csv and plots");
-  app.add_flag("--reduced", reduced, "The first scene on coarse meshes");
-  app.add_option("--check", expected, "Compare errors with this table; exit code 1 where they differ");
+  ExperimentOptions wanted(app, "results.csv and plots", "The first scene on coarse meshes",
+                           "Compare errors with this table; exit code 1 where they differ");
   CLI11_PARSE(app, argc, argv);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   CsvTable table{{"scene", "visibility", "patch_size", "patches", "error", "error_worst_1_percent", "pointwise_error",
                   "cpu_seconds"},
                  {}};
   std::size_t drawn = 0;
-  for (const Subject& subject : subjects(reduced)) {
+  for (const Subject& subject : subjects(wanted.reduced())) {
     ++drawn;
     if (!names.empty() && std::ranges::find(names, subject.name) == names.end()) continue;
     Plot plot{fmt::format("{}: solved radiosity", subject.name), "seconds of one thread",
               "error (George et al., eq. 7), meshing included"};
     plot.note = plot_note();
     answer(subject, table, plot);
-    if (out.empty()) continue;
-    std::filesystem::create_directories(out);
-    table.write(std::filesystem::path(out) / "results.csv");
-    write_plot(std::filesystem::path(out) / fmt::format("plot_{}.svg", drawn), plot);
+    if (!wanted.writes()) continue;
+    table.write(wanted.folder() / "results.csv");
+    write_plot(wanted.folder() / fmt::format("plot_{}.svg", drawn), plot);
   }
-  if (expected.empty()) return 0;
-  return verdict(differences(table, CsvTable::read(expected), 4, 0.1, {"cpu_seconds"}));
+  return wanted.check(table, 4, 0.1, {"cpu_seconds"});
 }
 
 }  // namespace
