@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace exitance {
+namespace {
+
+/// So often at most a region is cut to find out whether screens hide a facet together.
+constexpr std::uint32_t kMostCuts = 128;
+
+}  // namespace
 
 PointShaft::PointShaft(const PolygonSoup& soup) : soup_(soup) {}
 
@@ -53,10 +59,13 @@ std::span<const HalfSpace> PointShaft::half_spaces() {
 
 bool PointShaft::enters(std::uint32_t facet) {
   if (empty_ || facet == receiver_.facet || facet == shooter_.facet) return false;
-  const Facet& f = soup_.facets()[facet];
-  const auto corners = soup_.corners(f);
+  return meets_region(soup_.facets()[facet]);
+}
+
+bool PointShaft::meets_region(const Facet& facet) {
+  const auto corners = soup_.corners(facet);
   const auto at_sight = region_.meets_at_sight(corners, counts_);
-  return at_sight ? *at_sight : region_.meets(corners, f.plane.points, counts_);
+  return at_sight ? *at_sight : region_.meets(corners, facet.plane.points, counts_);
 }
 
 bool PointShaft::blocks(std::uint32_t facet) {
@@ -99,6 +108,74 @@ bool PointShaft::blocks(const Shell& shell) {
     });
   };
   return std::all_of(loop_.begin(), loop_.end(), meets);
+}
+
+bool PointShaft::is_screen(std::uint32_t item) {
+  if (empty_) return false;
+  const auto facets = static_cast<std::uint32_t>(soup_.facets().size());
+  const Plane& plane = soup_.facets()[shooter_.facet].plane;
+  const auto in_front = [&](const Vec3& v) { return side_of(plane, v, counts_) > 0; };
+  if (item < facets) {
+    const Facet& f = soup_.facets()[item];
+    return enters(item) && side_of(f.plane, receiver_.point, counts_) != 0 &&
+           std::ranges::all_of(soup_.corners(f), [&](const Corner& c) { return in_front(c.at); });
+  }
+  const Shell& shell = soup_.shells()[item - facets];
+  const auto is_seen = [&](std::uint32_t f) {
+    return side_of(soup_.facets()[f].plane, receiver_.point, counts_) > 0 && enters(f);
+  };
+  return shell.box.overlaps(box_) && std::ranges::any_of(shell.facets, is_seen) &&
+         std::ranges::all_of(shell.vertices, [&](std::uint32_t v) { return in_front(soup_.vertices()[v]); });
+}
+
+/// The facet's edges, or those between what is seen of a convex shell and what is not.
+void PointShaft::append_outline(std::uint32_t item) {
+  const auto facets = static_cast<std::uint32_t>(soup_.facets().size());
+  const auto is_seen = [&](std::uint32_t f) { return side_of(soup_.facets()[f].plane, receiver_.point, counts_) > 0; };
+  const auto append = [&](const Vec3& u, const Vec3& v, bool left) {
+    outlines_.push_back(left ? OutlineEdge{&u, &v} : OutlineEdge{&v, &u});
+  };
+  if (item < facets) {
+    const auto corners = soup_.corners(soup_.facets()[item]);
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      append(corners[k].at, corners[k + 1 < corners.size() ? k + 1 : 0].at, is_seen(item));
+    return;
+  }
+  for (const ShellEdge& edge : soup_.shells()[item - facets].edges) {
+    const bool left = is_seen(edge.left);
+    if (left != is_seen(edge.right)) append(soup_.vertices()[edge.from], soup_.vertices()[edge.to], left);
+  }
+}
+
+/// Takes the first screen's cone, from the receiver, away from the region, in convex parts: outside of one edge of its
+/// outline and inside of those before.
+bool PointShaft::rest_is_hidden(const Facet& facet, std::span<const std::uint32_t> screens) {
+  if (cuts_left_ == 0) return false;
+  --cuts_left_;
+  if (!meets_region(facet)) return true;
+  if (screens.empty()) return false;
+  const std::size_t first = outlines_.size(), planes = region_.count();
+  append_outline(screens.front());
+  const std::size_t last = outlines_.size();
+  bool hidden = true;
+  for (std::size_t k = first; k < last && hidden; ++k) {
+    const OutlineEdge edge = outlines_[k];
+    region_.add(receiver_.point, *edge.from, *edge.to);
+    hidden = rest_is_hidden(facet, screens.subspan(1));
+    region_.remove_last();
+    if (hidden) region_.add(receiver_.point, *edge.to, *edge.from);
+  }
+  while (region_.count() > planes) region_.remove_last();
+  outlines_.resize(first);
+  return hidden;
+}
+
+bool PointShaft::hidden(std::uint32_t facet, std::span<const std::uint32_t> screens) {
+  if (empty_ || facet == receiver_.facet || facet == shooter_.facet) return true;
+  const Facet& f = soup_.facets()[facet];
+  if (side_of(f.plane, receiver_.point, counts_) == 0) return true;
+  cuts_left_ = kMostCuts;
+  return rest_is_hidden(f, screens);
 }
 
 }  // namespace exitance

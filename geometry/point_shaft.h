@@ -41,11 +41,30 @@ class PointShaft {
   /// The same of a convex shell's solid, where no line starts or ends within it; false where one may.
   bool blocks(const Shell& shell);
 
+  /// Whether an item of the soup's index, a facet or a convex shell, can hide something of the pyramid from the
+  /// receiver and lies as a whole in front of the shooter's plane, so that each line that meets it from there meets it
+  /// before the shooter.
+  bool is_screen(std::uint32_t item);
+
+  /// Whether every line of the pyramid that crosses a facet meets one of the screens (is_screen): before the facet or
+  /// behind it, they hide there together what the facet would. True, too, of a facet that hides nothing, as it does not
+  /// enter or is seen edge-on. Exact when true; false also where that would take too long to find.
+  bool hidden(std::uint32_t facet, std::span<const std::uint32_t> screens);
+
   /// Half-spaces and a box that hold the pyramid, for searches.
   std::span<const HalfSpace> half_spaces();
   const Box& box() const { return box_; }
 
  private:
+  /// An edge of what is seen of a screen, which lies to its left.
+  struct OutlineEdge {
+    const Vec3 *from, *to;
+  };
+
+  bool meets_region(const Facet& facet);
+  void append_outline(std::uint32_t item);
+  bool rest_is_hidden(const Facet& facet, std::span<const std::uint32_t> screens);
+
   const PolygonSoup& soup_;
   Receiver receiver_;
   ShaftEnd shooter_;
@@ -54,6 +73,8 @@ class PointShaft {
   bool empty_ = true;
   OpenRegion region_;
   std::vector<HalfSpace> half_spaces_;
+  std::vector<OutlineEdge> outlines_;  ///< of the screens that the region is cut by
+  std::uint32_t cuts_left_ = 0;
   StageCounts counts_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace exitance {
 namespace {
@@ -112,43 +114,6 @@ bool ShadowVolume::lies_over(const Receiver& receiver) const {
   });
 }
 
-/// Whether every line from a point through a facet of the object to the shooter meets an item: before the object or
-/// behind it, the item hides there what the object hides.
-bool ShadowVolume::screens_all(const Vec3& from, std::uint32_t facet, std::uint32_t item) {
-  const PolygonSoup& soup = caster_.soup();
-  const auto facets = static_cast<std::uint32_t>(soup.facets().size());
-  const Plane& plane = soup.facets()[shooter_.facet].plane;
-  const auto meets = [&](const Facet& f, int side, const Vec3& to) {
-    const auto corners = soup.corners(f);
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      const Vec3 &u = corners[k].at, &v = corners[k + 1 < corners.size() ? k + 1 : 0].at;
-      if (orientation(u, v, from, to, counts_) == side) return false;
-    }
-    return true;
-  };
-  const auto corners = soup.corners(soup.facets()[facet]);
-  if (item < facets) {
-    const Facet& f = soup.facets()[item];
-    const int side = side_of(f.plane, from, counts_);
-    return side != 0 && std::ranges::all_of(corners, [&](const Corner& c) { return meets(f, side, c.at); }) &&
-           std::ranges::all_of(soup.corners(f), [&](const Corner& c) { return side_of(plane, c.at, counts_) > 0; });
-  }
-  const Shell& shell = soup.shells()[item - facets];
-  const auto meets_shell = [&](const Corner& c) {
-    return std::ranges::any_of(shell.facets, [&](std::uint32_t k) {
-      const Facet& f = soup.facets()[k];
-      return side_of(f.plane, from, counts_) > 0 && meets(f, 1, c.at);
-    });
-  };
-  return std::ranges::all_of(corners, meets_shell) && std::ranges::all_of(shell.vertices, [&](std::uint32_t v) {
-           return side_of(plane, soup.vertices()[v], counts_) > 0;
-         });
-}
-
-bool ShadowVolume::is_screened(const Vec3& from, std::uint32_t facet, std::span<const std::uint32_t> screens) {
-  return std::ranges::any_of(screens, [&](std::uint32_t item) { return screens_all(from, facet, item); });
-}
-
 Shade ShadowVolume::at(const Receiver& receiver, std::span<const std::uint32_t> screens) {
   const PolygonSoup& soup = caster_.soup();
   point_shaft_.reset(receiver, shooter_);
@@ -157,15 +122,22 @@ Shade ShadowVolume::at(const Receiver& receiver, std::span<const std::uint32_t> 
   found_.clear();
   if (caster_.box().overlaps(point_shaft_.box()))
     caster_.index().find(point_shaft_.half_spaces(), point_shaft_.box(), found_);
+  screens_.clear();
+  bool looked = screens.empty();
   const auto takes = [&](std::uint32_t k) {
     const std::uint32_t facet = caster_.first() + k;
-    return point_shaft_.enters(facet) && !is_screened(receiver.point, facet, screens);
+    if (!point_shaft_.enters(facet)) return false;
+    if (!std::exchange(looked, true))
+      std::ranges::copy_if(screens, std::back_inserter(screens_),
+                           [&](std::uint32_t s) { return point_shaft_.is_screen(s); });
+    return screens_.empty() || !point_shaft_.hidden(facet, screens_);
   };
   if (std::ranges::any_of(found_, takes)) {
     const auto blocked = std::ranges::any_of(caster_.convex_shells(), [&](std::uint32_t s) {
       return soup.shells()[s].box.overlaps(point_shaft_.box()) && point_shaft_.blocks(soup.shells()[s]);
     });
-    if (blocked || std::ranges::any_of(found_, [&](std::uint32_t k) { return point_shaft_.blocks(caster_.first() + k); }))
+    if (blocked ||
+        std::ranges::any_of(found_, [&](std::uint32_t k) { return point_shaft_.blocks(caster_.first() + k); }))
       return Shade::umbra;
     shade = Shade::penumbra;
   }

@@ -21,8 +21,8 @@ enum class Shade : std::uint8_t {
 
 /// An object: some facets of a soup, convex or not, in one piece or in many. Classifies sample points and polygons
 /// exactly (PointShaft, Shaft): outside is never wrong, so that no form factor changes there when the object is taken
-/// away or put in, and nothing of the shooter is seen from the umbra. Two cases reach beyond the volume of lines and are
-/// called penumbra: a facet of the object in the shooter's plane that covers some of it, for every receiver; and a
+/// away or put in, and nothing of the shooter is seen from the umbra. Two cases reach beyond the volume of lines and
+/// are called penumbra: a facet of the object in the shooter's plane that covers some of it, for every receiver; and a
 /// sample point that a facet of the object lies against, or in whose plane and over which it lies.
 ///
 /// Not for several threads at once: each has its own, of the same object (ShadowCaster). The soup must live as long.
@@ -58,8 +58,8 @@ class ShadowVolume {
   /// The shooter is convex: a facet or a piece of one.
   void set_shooter(const ShaftEnd& shooter);
 
-  /// Of a sample point. screens: items of the soup's index, none of the object's; facets of the object that one of them
-  /// hides from the point as a whole, or hides all behind them, take nothing.
+  /// Of a sample point. screens: items of the soup's index, none of the object's; a facet of the object takes nothing
+  /// where they hide, together, all lines through it (PointShaft::hidden).
   Shade at(const Receiver& receiver, std::span<const std::uint32_t> screens = {});
 
   /// Of a polygon: outside, or umbra, where that holds for all lines between interior points (Shaft).
@@ -76,8 +76,6 @@ class ShadowVolume {
 
  private:
   bool lies_over(const Receiver& receiver) const;
-  bool is_screened(const Vec3& from, std::uint32_t facet, std::span<const std::uint32_t> screens);
-  bool screens_all(const Vec3& from, std::uint32_t facet, std::uint32_t item);
 
   const ShadowCaster& caster_;
   ShaftEnd shooter_;
@@ -86,7 +84,7 @@ class ShadowVolume {
   std::vector<HalfSpace> region_;
   PointShaft point_shaft_;
   Shaft shaft_;
-  std::vector<std::uint32_t> found_;
+  std::vector<std::uint32_t> found_, screens_;
   StageCounts counts_;
 };
 

@@ -153,6 +153,76 @@ TEST(ShadowVolume, NeverMissesASamplePointAndTellsTheUmbra) {
                                                                      << changed;
 }
 
+/// Screens of a kind under a small object: two boxes and a sheet that touch, overlap or leave gaps.
+Faces screens_of(Random& random) {
+  Faces faces;
+  const double gap = random.below(3) == 0 ? 0.05 : 0, shift = 0.125 * (random.below(3) - 1.0);
+  add_box(faces, {-0.75, -0.75, 0.5}, {shift - gap, 0.75, 0.6});
+  add_box(faces, {shift, -0.75, 0.5}, {0.75, 0.125, 0.6 + 0.1 * random.below(2)});
+  faces.push_back({{{shift - 0.25, 0.125, 0.55}, {0.75, 0.125, 0.55}, {0.75, 0.75, 0.7}, {shift - 0.25, 0.75, 0.7}}, {}});
+  return faces;
+}
+
+// Brute force: where screens hide together what the object would hide no form factor changes, and they are found where
+// none of them does so alone.
+TEST(ShadowVolume, ScreensHideTogetherWhatTheObjectWould) {
+  Random random(3);
+  std::size_t together = 0, alone = 0, changed = 0, idle = 0;
+  for (int k = 0; k < 90; ++k) {
+    const int way = k % 3;
+    Faces without;
+    without.push_back({{{-0.5, -0.5, 2}, {-0.5, 0.5, 2}, {0.5, 0.5, 2}, {0.5, -0.5, 2}}, {}});  // shines down
+    without.push_back({{{-6, -5, 0}, {6, -5, 0}, {0, 8, 0}}, {}});
+    for (const Polygon& face : screens_of(random)) without.push_back(face);
+    Faces with = without;
+    const auto first = static_cast<std::uint32_t>(with.size());
+    const Vec3 low{random.between(-0.75, 0.5), random.between(-0.75, 0.5), k % 2 == 0 ? 0.75 : 0.125};
+    add_box(with, low, low + Vec3{0.25, 0.25, 0.25});
+    for (Faces* faces : {&with, &without}) {
+      for (Polygon& face : *faces) {
+        for (Vec3& v : face.outer) v = turned(v, way);
+      }
+    }
+    const PolygonSoup soup(with), free_soup(without);
+    std::vector<std::uint32_t> screens;
+    for (std::uint32_t f = soup.first_facet(2); f < soup.first_facet(first); ++f) {
+      const std::uint32_t shell = soup.facets()[f].shell;
+      const bool is_solid = shell != kNone && soup.shells()[shell].convex;
+      screens.push_back(is_solid ? static_cast<std::uint32_t>(soup.facets().size()) + shell : f);
+    }
+    screens.erase(std::unique(screens.begin(), screens.end()), screens.end());
+    ShadowCaster caster(soup, soup.first_facet(first), static_cast<std::uint32_t>(soup.facets().size()));
+    ShadowVolume volume(caster);
+    volume.set_shooter({0, {}});
+    Viewpoint view(soup), free_view(free_soup);
+    for (int i = 0; i < 120; ++i) {
+      const Vec3 at = i % 3 == 0 ? Vec3{0.25 * (random.below(9) - 4.0), 0.25 * (random.below(9) - 4.0), 0}
+                                 : Vec3{random.between(-1.5, 1.5), random.between(-1.5, 1.5), 0};
+      const Receiver receiver{turned(at, way), turned({0, 0, 1}, way), soup.first_facet(1)};
+      view.look_from(receiver);
+      free_view.look_from(receiver);
+      const PointFormFactor seen = view.form_factor({0, {}}), free = free_view.form_factor({0, {}});
+      const bool differs = std::fabs(seen.F - free.F) > seen.error + free.error;
+      changed += differs;
+      const bool enters = volume.at(receiver) != Shade::outside;
+      if (volume.at(receiver, screens) == Shade::outside) {
+        EXPECT_FALSE(differs) << k << ": " << free.F << " to " << seen.F << " at " << at.x << ' ' << at.y;
+        const bool by_one = std::ranges::any_of(screens, [&](const std::uint32_t& s) {
+          return volume.at(receiver, {&s, 1}) == Shade::outside;
+        });
+        alone += enters && by_one;
+        together += !by_one;
+      } else {
+        idle += !differs;
+      }
+    }
+  }
+  EXPECT_GT(changed, 100u);
+  EXPECT_GT(alone, 100u);
+  EXPECT_GT(together, 100u);
+  EXPECT_LE(idle, 2u) << "screens in front of the shooter are told exactly";
+}
+
 // Of polygons: outside where no sample point's form factor changes, umbra where none sees anything.
 TEST(ShadowVolume, ClassifiesPolygonsAsTheirPointsSay) {
   Random random(2);
