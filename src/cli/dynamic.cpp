@@ -65,6 +65,11 @@ class Dynamic {
     verb.add_option("--importance-points", options_.importance.points, "Points an object of estimated importance")
         ->check(whole_number_between(1, 1000))
         ->capture_default_str();
+    verb.add_option("--object-terms", object_terms_,
+                    "How patches of the edited object get what is redistributed to them: shot by the others, or "
+                    "gathered at once")
+        ->check(CLI::IsMember({"shot", "gathered"}))
+        ->capture_default_str();
     links_.add_to(verb);
     links_.add_update_to(verb);
     verb.add_option("--tolerance", options_.tolerance, "When a frame is done: bound of B's error relative to B max")
@@ -156,7 +161,7 @@ class Dynamic {
  private:
   /// What has no meaning for links.
   void refuse_shots_only() const {
-    for (const char* name : {"--strategy", "--threshold", "--importance", "--importance-points", "--budget-shots",
+    for (const char* name : {"--strategy", "--threshold", "--importance", "--importance-points", "--object-terms", "--budget-shots",
                              "--budget-ms", "--replay", "--no-log", "--work-off", "--references", "--elements"}) {
       if (verb_.get_option(name)->count() > 0)
         throw CLI::ValidationError(name, "needs --method scratch, restart or redistribute");
@@ -187,6 +192,7 @@ class Dynamic {
     options_.strategy = strategy_ == "1" ? Strategy::redistribute_first : Strategy::interleave;
     options_.importance.kind =
         importance_ == "exact" ? ImportanceOptions::Kind::exact : ImportanceOptions::Kind::estimated;
+    options_.object_terms = object_terms_ == "gathered" ? ObjectTerms::gathered : ObjectTerms::shot;
     if (patch_size_->count() == 0) options_.mesh.patch_size = scene.mesh.patch_size;
     if (elements_->count() == 0) {
       options_.mesh.elements_per_edge = scene.mesh.elements_per_edge;
@@ -253,10 +259,12 @@ class Dynamic {
     frame["edits"] = edits;
     frame["method"] = method_;
     frame["seconds"] = work.seconds;
-    frame["shots"] = work.propagations + work.redistributions;
+    frame["shots"] = work.shots();
     frame["propagation_shots"] = work.propagations;
     frame["redistribution_shots"] = work.redistributions;
-    frame["visibility_tests"] = work.propagation.visibility_tests + work.redistribution.visibility_tests;
+    frame["gathered_patches"] = work.gatherings;
+    frame["visibility_tests"] = work.propagation.visibility_tests + work.redistribution.visibility_tests +
+                                work.gathering.visibility_tests;
     frame["redistribution_tests"] = work.redistribution.visibility_tests;
     frame["redistribution_tests_idle"] = work.redistribution.idle_tests;
     frame["redistribution_tests_idle_patches"] = work.redistribution.idle_patch_tests;
@@ -301,7 +309,7 @@ class Dynamic {
   SessionOptions options_;
   LinkSettings links_;
   CLI::Option *patch_size_ = nullptr, *elements_ = nullptr;
-  std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", replay_, reference_file_,
+  std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", object_terms_ = "shot", replay_, reference_file_,
                      folder_;
   MemoryLimit memory_limit_;
   std::uint32_t image_size_ = 800;

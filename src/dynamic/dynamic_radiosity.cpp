@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "src/dynamic/importance.h"
 
@@ -50,6 +51,18 @@ void DynamicRadiosity::set_materials(const Scene& scene, std::uint32_t object) {
   }
 }
 
+/// By shots and by gathering.
+double DynamicRadiosity::received(std::uint32_t element, std::uint32_t band) const {
+  const CompensatedSum& shot = H_[std::size_t{element} * bands_ + band];
+  const std::uint32_t first = changed_last_ ? version().slot(*changed_last_).element_first : 0;
+  const std::size_t at = std::size_t{element - first} * bands_ + band;
+  if (element < first || at >= G_.size()) return shot.value();
+  CompensatedSum both = shot;
+  both.add(G_[at].high());
+  both.add(G_[at].low());
+  return both.value();
+}
+
 /// B and ΔB of a patch from what its elements have received.
 void DynamicRadiosity::refresh(std::uint32_t p) {
   const bool present = version().object_of_patch(p) != SceneVersion::kVoid;
@@ -64,7 +77,7 @@ void DynamicRadiosity::refresh(std::uint32_t p) {
     double area = 0;
     for (std::uint32_t e = patch.element_first; e < patch.element_first + patch.element_count; ++e) {
       const double a = version().mesh().elements[e].area;
-      power.add_product(a, H_[std::size_t{e} * bands_ + b].value());
+      power.add_product(a, received(e, b));
       area += a;
     }
     B_[i] = E_[i] + rho_[i] * (power.value() / area);
@@ -116,8 +129,19 @@ void DynamicRadiosity::drop_empty_layers() {
   std::erase_if(layers_, is_empty);
 }
 
+/// What was gathered and not shot is forgotten, and who gathers.
+void DynamicRadiosity::drop_gathered() {
+  G_.clear();
+  gathered_rows_ = {};
+  const std::optional<std::uint32_t> object = std::exchange(changed_last_, std::nullopt);
+  if (!object) return;
+  const std::uint32_t first = version().slot(*object).patch_first, count = std::exchange(gathered_patches_, 0);
+  for (std::uint32_t p = first; p < first + count; ++p) refresh(p);
+}
+
 void DynamicRadiosity::change_geometry(std::shared_ptr<const SceneVersion> next, const Scene& scene,
                                        std::uint32_t object, const std::string& name) {
+  drop_gathered();
   // What the object received where it was is gone with it.
   const ObjectSlot was = version().slot(object);
   std::fill_n(H_.begin() + static_cast<std::ptrdiff_t>(std::size_t{was.element_first} * bands_),
@@ -134,9 +158,16 @@ void DynamicRadiosity::change_geometry(std::shared_ptr<const SceneVersion> next,
     refresh(p);
   }
   set_materials(scene, object);
+  if (version().slot(object).present) changed_last_ = object;
 }
 
 void DynamicRadiosity::forget_changes() {
+  for (std::size_t k = 0; k < G_.size(); ++k) {
+    CompensatedSum& H = H_[std::size_t{version().slot(*changed_last_).element_first} * bands_ + k];
+    H.add(G_[k].high());
+    H.add(G_[k].low());
+  }
+  G_.clear();
   for (std::size_t k = 0; k + 1 < layers_.size(); ++k) {
     for (std::uint32_t p = 0; p < version().patches(); ++p) {
       const std::uint32_t object = version().object_of_patch(p);
@@ -148,6 +179,7 @@ void DynamicRadiosity::forget_changes() {
     }
   }
   layers_.erase(layers_.begin(), layers_.end() - 1);
+  drop_gathered();
 }
 
 void DynamicRadiosity::change_materials(const Scene& scene, std::uint32_t object) {
@@ -157,6 +189,7 @@ void DynamicRadiosity::change_materials(const Scene& scene, std::uint32_t object
 void DynamicRadiosity::start_over() {
   columns_.clear();
   differences_.clear();
+  drop_gathered();
   layers_.erase(layers_.begin(), layers_.end() - 1);
   layers_.back().shot = {};
   fit_arrays();
@@ -178,7 +211,7 @@ std::shared_ptr<const FormFactorColumn> DynamicRadiosity::present_column(std::ui
   if (column && column->version == shared_version()) return column;
   if (column && since(column->version).keeps(patch)) {
     const VersionDifference& difference = since(column->version);
-    const auto changes = difference.column(patch, VersionDifference::Search::shadow_volumes, column.get(), work);
+    const auto changes = difference.column(patch, VersionDifference::Search::shadow_volumes, column.get(), gathered_rows_, work);
     column = std::make_shared<const FormFactorColumn>(changed_column(*column, difference, changes));
   } else {
     column = std::make_shared<const FormFactorColumn>(make_column(shared_version(), patch, work.visibility_tests));
@@ -213,7 +246,7 @@ DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t pat
   const VersionDifference& difference = since(layer.version);
   auto known = columns_.find(patch);
   if (known && known->version != layer.version) known.reset();
-  const std::vector<FormFactorChange> changes = difference.column(patch, search, known.get(), shot.work);
+  const std::vector<FormFactorChange> changes = difference.column(patch, search, known.get(), gathered_rows_, shot.work);
   if (known && difference.keeps(patch))
     columns_.put(patch, std::make_shared<const FormFactorColumn>(changed_column(*known, difference, changes)));
   std::vector<double> high(bands_), low(bands_);
@@ -229,6 +262,13 @@ DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t pat
     for (const double* amount : {high.data(), low.data()}) {
       receive(c.element, -c.before, amount);
       receive(c.element, c.after, amount);
+    }
+    if (gathered_rows_.has(c.element)) {
+      CompensatedSum* G = &G_[std::size_t{c.element - version().slot(*changed_last_).element_first} * bands_];
+      for (std::uint32_t b = 0; b < bands_; ++b) {
+        for (const double amount : {high[b], low[b]}) G[b].add_product(-c.after, amount);
+      }
+      continue;
     }
     touched.push_back(c.element);
     const std::size_t p = std::size_t{version().mesh().elements[c.element].patch} * bands_;
@@ -246,6 +286,51 @@ DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t pat
   refresh_patches_of(touched);
   refresh(patch);
   drop_empty_layers();
+  if (pending_changes() == 0) drop_gathered();
+  return shot;
+}
+
+bool DynamicRadiosity::can_gather() const {
+  return pending_changes() > 0 && changed_last_ && gathered_patches_ < version().slot(*changed_last_).patch_count;
+}
+
+DynamicShot DynamicRadiosity::gather() {
+  const ObjectSlot& slot = version().slot(*changed_last_);
+  if (G_.empty()) {
+    G_.resize(std::size_t{slot.element_count} * bands_);
+    gathered_rows_ = ObjectRows(slot.element_first, slot.element_count);
+  }
+  DynamicShot shot{DynamicShot::Kind::gathering, slot.patch_first + gathered_patches_++, 0, {}};
+  const Patch& patch = version().mesh().patches[shot.patch];
+  std::vector<const VersionDifference*> since_layer;
+  for (std::size_t k = 0; k + 1 < layers_.size(); ++k) since_layer.push_back(&since(layers_[k].version));
+  std::vector<PointRow> rows(patch.element_count);
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, patch.element_count, 1), [&](const auto& some) {
+    for (std::uint32_t k = some.begin(); k < some.end(); ++k) {
+      rows[k] = version().row(patch.element_first + k);
+      CompensatedSum* G = &G_[std::size_t{patch.element_first + k - slot.element_first} * bands_];
+      for (std::size_t layer = 0; layer < since_layer.size(); ++layer) {
+        for (std::size_t i = 0; i < rows[k].column.size(); ++i) {
+          const std::uint32_t from = rows[k].column[i];
+          if (!has_to_redistribute(layer, from) || !since_layer[layer]->keeps(from)) continue;
+          for (std::uint32_t b = 0; b < bands_; ++b) {
+            const CompensatedSum& past = std::as_const(layers_[layer].shot)[std::size_t{from} * bands_ + b];
+            for (const double amount : {past.high(), past.low()}) G[b].add_product(rows[k].F[i], amount);
+          }
+        }
+      }
+    }
+  });
+  for (std::uint32_t k = 0; k < patch.element_count; ++k) {
+    const std::uint32_t e = patch.element_first + k;
+    shot.work.visibility_tests += rows[k].column.size();
+    for (std::uint32_t b = 0; b < bands_; ++b) {
+      shot.power += weights_[b] * version().mesh().elements[e].area * rho_[std::size_t{shot.patch} * bands_ + b] *
+                    std::fabs(G_[std::size_t{e - slot.element_first} * bands_ + b].value());
+    }
+    gathered_rows_.put(e, std::move(rows[k]));
+  }
+  refresh(shot.patch);
   return shot;
 }
 
@@ -308,7 +393,7 @@ DynamicRadiosity::Strongest DynamicRadiosity::strongest_of(std::uint32_t object)
 std::vector<double> DynamicRadiosity::importance_of(const Layer& layer, const VersionDifference& difference) const {
   switch (importance_.kind) {
     case ImportanceOptions::Kind::exact:
-      return exact_importance(difference);
+      return exact_importance(difference, gathered_rows_);
     case ImportanceOptions::Kind::estimated: {
       std::vector<std::uint32_t> have_shot;
       for (std::uint32_t p = 0; p < difference.before().patches(); ++p) {
@@ -361,7 +446,7 @@ std::vector<double> DynamicRadiosity::element_B() const {
     if (!version().has_element(e)) continue;
     const std::size_t p = std::size_t{version().mesh().elements[e].patch} * bands_;
     for (std::uint32_t b = 0; b < bands_; ++b)
-      B[std::size_t{e} * bands_ + b] = E_[p + b] + rho_[p + b] * H_[std::size_t{e} * bands_ + b].value();
+      B[std::size_t{e} * bands_ + b] = E_[p + b] + rho_[p + b] * received(e, b);
   }
   return B;
 }

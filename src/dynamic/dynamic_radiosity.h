@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "src/dynamic/form_factor_column.h"
+#include "src/dynamic/object_rows.h"
 #include "src/dynamic/version_difference.h"
 #include "src/scene/edit.h"
 #include "src/solve/compensated.h"
@@ -28,10 +30,10 @@ struct ImportanceOptions {
 
 /// One shot, and what it took.
 struct DynamicShot {
-  enum class Kind : std::uint8_t { propagation, redistribution };
+  enum class Kind : std::uint8_t { propagation, redistribution, gathering };
   Kind kind = Kind::propagation;
   std::uint32_t patch = 0;
-  double power = 0;  ///< Σ A ρ |ΔF| |what was shot|, luminance [W or lm]: what it moved
+  double power = 0;  ///< Σ A ρ |ΔF| |what was shot|, luminance [W or lm]: what it moved; of gathering: what it brought
   ChangeWork work;
 };
 
@@ -45,7 +47,7 @@ struct PendingChange {
 
 /// The state of a solution. At any time, for every element i that is there,
 ///
-///   B_i = E_i + ρ_i H_i,   H_i = Σ_v Σ_j F_ij^v S_j^v
+///   B_i = E_i + ρ_i (H_i + G_i),   H_i = Σ_v Σ_j F_ij^v S_j^v
 ///
 /// where S_j^v is what patch j has shot by the form factors of version v of the scene. A propagation shot of patch j
 /// adds its unshot ΔB_j to S_j by the present version. An edit of the geometry makes a new version. A redistribution
@@ -59,6 +61,12 @@ struct PendingChange {
 /// changed object has itself shot, its patches of the old version take that back as a whole (negative energy); its
 /// elements begin anew. Where the paper's text shoots ρ_j F_ij^Δt B_j, eq. 5 needs ρ_i; where Figure 2 multiplies F^Δt,
 /// which is negative in a shadow, by −1, it means its magnitude.
+///
+/// G_i is 0 but for elements of the object that was changed last. They were not there, or elsewhere, when the older S
+/// were shot, so that their R_i are all that they get of it: Σ_v<now Σ_j F_ij^now S_j^v. It can be shot to them by each
+/// patch (Figure 2), or gathered, one row of form factors an element (section "The redistribution algorithm"): G_i is
+/// what has been gathered and not yet been shot. A redistribution shot then only turns it into H_i; a new change of
+/// geometry drops it.
 ///
 /// A propagation shot takes the patch's column of form factors as it was kept, brought to the present version by what has
 /// changed of it since, or computes it.
@@ -93,6 +101,11 @@ class DynamicRadiosity {
   DynamicShot propagate(std::uint32_t patch);
   /// Redistributes what a patch shot in an older version. REQUIRES: change < pending_changes().
   DynamicShot redistribute(std::size_t change, std::uint32_t patch, VersionDifference::Search search);
+
+  /// Whether a patch of the object that was changed last can still gather what is to be redistributed to it.
+  bool can_gather() const;
+  /// The next of them does. REQUIRES: can_gather().
+  DynamicShot gather();
 
   /// The oldest first; all patches of a change have been moved when it is gone.
   std::size_t pending_changes() const { return layers_.size() - 1; }
@@ -146,6 +159,8 @@ class DynamicRadiosity {
   const VersionDifference& since(const std::shared_ptr<const SceneVersion>& version);
   std::shared_ptr<const FormFactorColumn> present_column(std::uint32_t patch, ChangeWork& work);
   void set_materials(const Scene& scene, std::uint32_t object);
+  double received(std::uint32_t element, std::uint32_t band) const;
+  void drop_gathered();
   void refresh(std::uint32_t patch);
   void receive(std::uint32_t element, double F, const double* amount);
   void refresh_patches_of(const std::vector<std::uint32_t>& elements);
@@ -158,6 +173,10 @@ class DynamicRadiosity {
   std::vector<double> weights_;     // of bands
   std::vector<Layer> layers_;       // the present one last
   std::vector<CompensatedSum> H_;   // by element and band
+  std::optional<std::uint32_t> changed_last_;  // the object that gathers, if it is there
+  std::uint32_t gathered_patches_ = 0;         // the first of its
+  ObjectRows gathered_rows_;                   // of their elements
+  std::vector<CompensatedSum> G_;              // by element of the object and band; empty: 0
   std::vector<double> rho_, E_;     // by patch and band
   std::vector<double> B_, unshot_;  // by patch and band
   ImportanceOptions importance_;

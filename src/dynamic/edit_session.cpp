@@ -12,12 +12,18 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 void count(const DynamicShot& shot, SessionWork& work) {
-  if (shot.kind == DynamicShot::Kind::propagation) {
-    ++work.propagations;
-    work.propagation += shot.work;
-  } else {
-    ++work.redistributions;
-    work.redistribution += shot.work;
+  switch (shot.kind) {
+    case DynamicShot::Kind::propagation:
+      ++work.propagations;
+      work.propagation += shot.work;
+      return;
+    case DynamicShot::Kind::redistribution:
+      ++work.redistributions;
+      work.redistribution += shot.work;
+      return;
+    case DynamicShot::Kind::gathering:
+      ++work.gatherings;
+      work.gathering += shot.work;
   }
 }
 
@@ -94,6 +100,8 @@ void EditSession::apply(const Edit& edit) {
 
 /// One shot, the one that comes next; false when nothing is left to do.
 bool EditSession::step(DynamicRadiosity& of, SessionWork& work) {
+  const bool gathers =
+      options_.object_terms == ObjectTerms::gathered && options_.method == UpdateMethod::redistribute;
   const auto propagate = [&](std::uint32_t patch) { count(of.propagate(patch), work); };
   if (edited_) {
     const auto emitter = of.strongest_of(*edited_);
@@ -101,6 +109,10 @@ bool EditSession::step(DynamicRadiosity& of, SessionWork& work) {
       propagate(emitter.patch);
       return true;
     }
+  }
+  if (gathers && of.can_gather()) {
+    count(of.gather(), work);
+    return true;
   }
   const auto unshot = of.strongest();
   const bool propagates = unshot.energy > 0 && of.error_bound() > options_.tolerance;
@@ -124,7 +136,7 @@ SessionWork EditSession::work(const Budget& budget) {
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   const std::optional<std::uint32_t> temporary = held();
   for (;;) {
-    if (budget.shots && work.propagations + work.redistributions >= *budget.shots) break;
+    if (budget.shots && work.shots() >= *budget.shots) break;
     if (budget.seconds && seconds() >= *budget.seconds) break;
     if (temporary && !shown_) {
       const double left = base_.strongest_change().energy;

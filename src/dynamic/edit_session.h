@@ -25,6 +25,12 @@ enum class Strategy : std::uint8_t {
   interleave           ///< two: always the larger of both
 };
 
+/// How the patches of the object that was edited get their redistribution terms, by UpdateMethod::redistribute.
+enum class ObjectTerms : std::uint8_t {
+  shot,     ///< by the redistribution shots of others (Figure 2)
+  gathered  ///< each by itself and before all redistribution shots, which then go to the shadows only
+};
+
 struct SessionOptions {
   MeshOptions mesh;
   UpdateMethod method = UpdateMethod::redistribute;
@@ -33,6 +39,7 @@ struct SessionOptions {
   /// power, as it is ranked. 0: until nothing is left to redistribute.
   double threshold = 1e-4;
   ImportanceOptions importance;
+  ObjectTerms object_terms = ObjectTerms::shot;
   /// Without it what is interrupted by an edit is never redistributed.
   bool log = true;
   double tolerance = 1e-6;  ///< of ‖B − B*‖∞ / max B, worst band: then there is nothing left to do; > 0
@@ -50,10 +57,13 @@ struct Budget {
 /// What a stretch of work has done. The same shots, asked for as a budget, give the same bits again.
 struct SessionWork {
   std::uint64_t propagations = 0, redistributions = 0;
+  std::uint64_t gatherings = 0;  ///< of a patch each; a shot, too, where shots are counted
   double seconds = 0;
-  ChangeWork propagation, redistribution;
+  ChangeWork propagation, redistribution, gathering;
   bool finished = false;     ///< nothing was left to do
   bool interrupted = false;  ///< by new input
+
+  std::uint64_t shots() const { return propagations + redistributions + gatherings; }
 };
 
 class EditSession {

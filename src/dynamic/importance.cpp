@@ -96,25 +96,28 @@ class LookPast {
 
 }  // namespace
 
-std::vector<double> exact_importance(const VersionDifference& difference) {
+std::vector<double> exact_importance(const VersionDifference& difference, const ObjectRows& known) {
   std::vector<double> importance = own_areas(difference);
-  const auto add = [&](const SceneVersion& version, const ObjectSlot& slot) {
+  const auto add = [&](const SceneVersion& version, const ObjectSlot& slot, const ObjectRows& known_rows) {
     if (!slot.present) return;
     std::vector<PointRow> rows(slot.element_count);
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, slot.element_count, 1), [&](const auto& some) {
-      for (std::uint32_t k = some.begin(); k < some.end(); ++k) rows[k] = version.row(slot.element_first + k);
+      for (std::uint32_t k = some.begin(); k < some.end(); ++k) {
+        if (!known_rows.has(slot.element_first + k)) rows[k] = version.row(slot.element_first + k);
+      }
     });
     for (std::uint32_t k = 0; k < slot.element_count; ++k) {
-      const double area = version.mesh().elements[slot.element_first + k].area;
-      for (std::size_t i = 0; i < rows[k].column.size(); ++i) {
-        const std::uint32_t p = rows[k].column[i];
-        if (difference.keeps(p)) importance[p] += area * rows[k].F[i];
+      const std::uint32_t e = slot.element_first + k;
+      const PointRow& row = known_rows.has(e) ? known_rows.row(e) : rows[k];
+      for (std::size_t i = 0; i < row.column.size(); ++i) {
+        const std::uint32_t p = row.column[i];
+        if (difference.keeps(p)) importance[p] += version.mesh().elements[e].area * row.F[i];
       }
     }
   };
   for (const std::uint32_t object : difference.objects()) {
-    add(difference.before(), difference.before().slot(object));
-    add(difference.after(), difference.after().slot(object));
+    add(difference.before(), difference.before().slot(object), {});
+    add(difference.after(), difference.after().slot(object), known);
   }
   return importance;
 }

@@ -11,8 +11,9 @@ namespace exitance {
 
 /// By patch [m²]: Σ A_e F_ep over the elements e of the changed objects as they were, and of those as they are: the
 /// power that reaches them of a unit of exitance that patch p has shot. The patch's own area for patches of changed
-/// objects, which take back all that they shot. In parallel; any number of threads gives the same bits.
-std::vector<double> exact_importance(const VersionDifference& difference);
+/// objects, which take back all that they shot. known: rows of changed objects as they are, where they have been looked
+/// for. In parallel; any number of threads gives the same bits.
+std::vector<double> exact_importance(const VersionDifference& difference, const ObjectRows& known);
 
 /// The paper's estimate of the same: of some points in each changed object, as it was and as it is, a differential area
 /// that faces the patch receives F B; its form factor sees past all other objects, exactly. It is multiplied with a

@@ -187,8 +187,8 @@ void VersionDifference::find_candidates(std::uint32_t patch, std::vector<std::ui
 
 /// Elements of one patch, whose numbers stand in `changes`.
 void VersionDifference::compare(std::uint32_t receiver, std::uint32_t patch, Search search,
-                                const FormFactorColumn* known, Scratch& scratch, std::span<FormFactorChange> changes,
-                                ChangeWork& work) const {
+                                const FormFactorColumn* known, const ObjectRows& rows, Scratch& scratch,
+                                std::span<FormFactorChange> changes, ChangeWork& work) const {
   const bool stays = after_->same_in(*before_, after_->object_of_patch(receiver)), kept = keeps(patch);
   if (kept && stays && search == Search::shadow_volumes)
     return compare_in_shadow(receiver, patch, known, scratch, changes, work);
@@ -208,7 +208,12 @@ void VersionDifference::compare(std::uint32_t receiver, std::uint32_t patch, Sea
   } else if (stays) {
     look(*before_, &FormFactorChange::before);
   }
-  if (kept) look(*after_, &FormFactorChange::after);
+  if (!kept) return;
+  if (rows.has(changes.front().element)) {
+    for (FormFactorChange& c : changes) c.after = rows.F(c.element, patch);
+  } else {
+    look(*after_, &FormFactorChange::after);
+  }
 }
 
 void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t patch, const FormFactorColumn* known,
@@ -274,7 +279,8 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
 }
 
 std::vector<FormFactorChange> VersionDifference::column(std::uint32_t patch, Search search,
-                                                        const FormFactorColumn* known, ChangeWork& work) const {
+                                                        const FormFactorColumn* known, const ObjectRows& rows,
+                                                        ChangeWork& work) const {
   std::vector<std::uint32_t> elements;
   if (search == Search::everywhere || !keeps(patch)) {
     for (std::uint32_t e = 0; e < after_->elements(); ++e) {
@@ -296,7 +302,7 @@ std::vector<FormFactorChange> VersionDifference::column(std::uint32_t patch, Sea
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches, 4), [&](const auto& some) {
     Scratch& scratch = *scratch_.local();
     for (std::size_t k = some.begin(); k < some.end(); ++k) {
-      compare(patch_of(first[k]), patch, search, known, scratch,
+      compare(patch_of(first[k]), patch, search, known, rows, scratch,
               std::span(changes).subspan(first[k], first[k + 1] - first[k]), works[k]);
     }
   });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/shadow_volume.h"
+#include "src/dynamic/object_rows.h"
 #include "src/dynamic/scene_version.h"
 
 namespace exitance {
@@ -65,16 +66,17 @@ class VersionDifference {
   ///  - A patch of a changed object is no longer there: its F^t is 0, and all elements that see it are given.
   ///  - Else elements whose view of the patch meets a changed object as it was or as it is.
   /// known: the patch's column in `before`, if there is one: F^{t−1} is not computed then.
+  /// rows: of elements of a changed object in `after`: their F^t is not computed either.
   /// In parallel; any number of threads gives the same bits.
   std::vector<FormFactorChange> column(std::uint32_t patch, Search search, const FormFactorColumn* known,
-                                       ChangeWork& work) const;
+                                       const ObjectRows& rows, ChangeWork& work) const;
 
  private:
   struct Scratch;
 
   void find_candidates(std::uint32_t patch, std::vector<std::uint32_t>& found) const;
   void compare(std::uint32_t receiver, std::uint32_t patch, Search search, const FormFactorColumn* known,
-               Scratch& scratch, std::span<FormFactorChange> changes, ChangeWork& work) const;
+               const ObjectRows& rows, Scratch& scratch, std::span<FormFactorChange> changes, ChangeWork& work) const;
   void compare_in_shadow(std::uint32_t receiver, std::uint32_t patch, const FormFactorColumn* known, Scratch& scratch,
                          std::span<FormFactorChange> changes, ChangeWork& work) const;
 

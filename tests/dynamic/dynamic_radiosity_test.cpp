@@ -36,6 +36,10 @@ class Followed {
   /// Up to so many shots, the strongest of any kind first.
   void shoot(int shots, double until = 1e-13) {
     for (; shots > 0; --shots) {
+      if (gathers && state.can_gather()) {
+        state.gather();
+        continue;
+      }
       const auto change = state.strongest_change();
       const auto unshot = state.strongest();
       if (change.energy >= unshot.energy) {
@@ -59,6 +63,7 @@ class Followed {
   MeshOptions mesh_;
   DynamicRadiosity state;
   VersionDifference::Search search = VersionDifference::Search::shadow_volumes;
+  bool gathers = false;
   ChangeWork work;
 };
 
@@ -147,14 +152,75 @@ TEST(DynamicRadiosity, EachKindOfEditEqualsSolvingFromScratch) {
   edits.push_back(turn);
   edits.push_back({Operation::remove, 4, {}, {}, {}});
   edits.push_back({Operation::add, 2, {}, {}, {}});
-  Followed room(test_room());
-  room.finish();
-  for (const Edit& edit : edits) {
-    room.apply(edit);
+  for (const bool gathers : {false, true}) {
+    Followed room(test_room());
+    room.gathers = gathers;
     room.finish();
-    EXPECT_LT(largest_difference(room.state.element_B(), converged_reference(room.state)), 1e-10)
-        << name_of(edit.operation) << " object " << edit.object;
+    for (const Edit& edit : edits) {
+      room.apply(edit);
+      room.finish();
+      EXPECT_LT(largest_difference(room.state.element_B(), converged_reference(room.state)), 1e-10)
+          << name_of(edit.operation) << " object " << edit.object << (gathers ? ", gathered" : ", shot");
+    }
   }
+}
+
+// R_i of eq. 5, by Figure 2 and by the section before it.
+TEST(DynamicRadiosity, GatheredTermsAreThoseThatAllShotsBring) {
+  for (const bool lamp : {false, true}) {
+    Followed shot(test_room());
+    shot.shoot(60);
+    Edit move{Operation::move, 2, Placement{rotation({0, 0, 1}, 20), {-0.5, 0.25, 0.25}}, {}, {}};
+    shot.apply(move);
+    shot.shoot(7);
+    shot.apply(lamp ? Edit{Operation::add, 3, {}, {}, {}} : Edit{Operation::move, 1, move.placement, {}, {}});
+    ASSERT_EQ(shot.state.pending_changes(), 2u);
+    Followed gathered = shot;
+    const ObjectSlot slot = gathered.state.version().slot(lamp ? 3 : 1);
+    std::uint32_t count = 0;
+    while (gathered.state.can_gather()) {
+      EXPECT_EQ(gathered.state.gather().patch, slot.patch_first + count++);
+    }
+    EXPECT_EQ(count, slot.patch_count);
+    const auto expect_same_on_object = [&](double tolerance) {
+      const auto a = shot.state.element_B(), b = gathered.state.element_B();
+      for (std::size_t i = std::size_t{slot.element_first} * 3; i < (slot.element_first + slot.element_count) * 3; ++i)
+        ASSERT_NEAR(a[i], b[i], tolerance);
+    };
+    const auto at_once = gathered.state.element_B();
+    for (Followed* room : {&shot, &gathered}) {
+      while (room->state.pending_changes() > 0) {
+        const auto change = room->state.strongest_change();
+        const DynamicShot done =
+            room->state.redistribute(change.change, change.patch, VersionDifference::Search::shadow_volumes);
+        EXPECT_EQ(done.kind, DynamicShot::Kind::redistribution);
+      }
+    }
+    expect_same_on_object(1e-12);
+    const auto in_the_end = gathered.state.element_B();
+    double most = 0;
+    for (std::size_t i = std::size_t{slot.element_first} * 3; i < (slot.element_first + slot.element_count) * 3; ++i) {
+      EXPECT_NEAR(at_once[i], in_the_end[i], 1e-12) << "shots bring nothing more";
+      most = std::max(most, in_the_end[i]);
+    }
+    EXPECT_GT(most, 0.1);
+    EXPECT_FALSE(gathered.state.can_gather());
+  }
+}
+
+TEST(DynamicRadiosity, WhatIsGatheredAndNotShotIsGoneWithTheNextChange) {
+  Followed room(test_room());
+  room.shoot(60);
+  room.apply({Operation::add, 3, {}, {}, {}});
+  const auto without = room.state.element_B();
+  while (room.state.can_gather()) room.state.gather();
+  EXPECT_GT(largest_difference(room.state.element_B(), without), 1e-3);
+  Edit turn{Operation::move, 4, Placement{rotation({1, 0, 0.2}, 30), {0, 1, 0.4}}, {}, {}};
+  room.apply(turn);
+  const ObjectSlot& lamp = room.state.version().slot(3);
+  const auto now = room.state.element_B();
+  for (std::size_t i = std::size_t{lamp.element_first} * 3; i < (lamp.element_first + lamp.element_count) * 3; ++i)
+    EXPECT_EQ(now[i], without[i]);
 }
 
 TEST(DynamicRadiosity, ASolidThatTwoObjectsCloseChangesWithEither) {
@@ -181,6 +247,7 @@ TEST(DynamicRadiosity, AHundredRandomEditsInterruptedAnywhereEqualSolvingFromScr
   Followed room(test_room());
   std::size_t most_pending = 0;
   for (int k = 0; k < 100; ++k) {
+    room.gathers = k % 3 != 0;
     room.shoot(static_cast<int>(random.pick(k % 10 == 0 ? 400 : 12)));
     room.apply(random.next(room.edited));
     most_pending = std::max(most_pending, room.state.pending_changes());
@@ -204,8 +271,8 @@ TEST(DynamicRadiosity, ShadowVolumesMissNothingThatLookingEverywhereFinds) {
     for (std::uint32_t p = 0; p < version->patches(); ++p) {
       if (version->object_of_patch(p) == SceneVersion::kVoid) continue;
       ChangeWork all, some;
-      const auto everywhere = difference.column(p, VersionDifference::Search::everywhere, nullptr, all);
-      const auto found = difference.column(p, VersionDifference::Search::shadow_volumes, nullptr, some);
+      const auto everywhere = difference.column(p, VersionDifference::Search::everywhere, nullptr, {}, all);
+      const auto found = difference.column(p, VersionDifference::Search::shadow_volumes, nullptr, {}, some);
       auto at = found.begin();
       for (const FormFactorChange& c : everywhere) {
         if (std::fabs(c.after - c.before) <= c.error + 1e-15) continue;
@@ -226,6 +293,7 @@ TEST(DynamicRadiosity, AnyNumberOfThreadsGivesTheSameBits) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     RandomEdits random(3);
     Followed room(test_room());
+    room.gathers = true;
     for (int k = 0; k < 6; ++k) {
       room.shoot(40);
       room.apply(random.next(room.edited));

@@ -24,6 +24,13 @@ SessionOptions options_with(UpdateMethod method, Strategy strategy, ImportanceOp
   return options;
 }
 
+SessionOptions gathering() {
+  SessionOptions options =
+      options_with(UpdateMethod::redistribute, Strategy::interleave, ImportanceOptions::Kind::exact);
+  options.object_terms = ObjectTerms::gathered;
+  return options;
+}
+
 SessionOptions plain() {
   return options_with(UpdateMethod::redistribute, Strategy::redistribute_first, ImportanceOptions::Kind::estimated);
 }
@@ -47,7 +54,7 @@ TEST(EditSession, EveryMethodStrategyAndImportanceConvergesToTheSame) {
         options_with(UpdateMethod::redistribute, Strategy::redistribute_first, Kind::estimated),
         options_with(UpdateMethod::redistribute, Strategy::redistribute_first, Kind::exact),
         options_with(UpdateMethod::redistribute, Strategy::interleave, Kind::estimated),
-        options_with(UpdateMethod::redistribute, Strategy::interleave, Kind::exact)}) {
+        options_with(UpdateMethod::redistribute, Strategy::interleave, Kind::exact), gathering()}) {
     EditSession session(test_room(), options);
     EXPECT_TRUE(session.work({}).finished);
     session.apply(moved(1, {0.25, 0.5, 0}));
@@ -121,6 +128,22 @@ TEST(EditSession, EmittersOnAnAddedObjectPropagateFirst) {
   six.shots = 6;
   const SessionWork work = session.work(six);
   EXPECT_EQ(work.propagations, 6u) << "the lamp's six patches";
+}
+
+TEST(EditSession, AnEditedObjectGathersFirstAndEachPatchIsAShot) {
+  EditSession session(test_room(), gathering());
+  session.work({});
+  session.apply(moved(1, {0.5, 0, 0}));
+  Budget four;
+  four.shots = 4;
+  SessionWork work = session.work(four);
+  EXPECT_EQ(work.gatherings, 4u);
+  EXPECT_EQ(work.shots(), 4u);
+  const std::uint32_t patches = session.solution().version().slot(1).patch_count;
+  work = session.work({});
+  EXPECT_EQ(work.gatherings, patches - 4);
+  EXPECT_GT(work.redistributions, 10u);
+  EXPECT_LT(distance(session.solution()), 1e-10);
 }
 
 TEST(EditSession, StrategyOneRedistributesBeforeItPropagates) {
