@@ -3,47 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "src/scene/scene_soup.h"
+
 namespace exitance {
 namespace {
-
-/// Room for what edits bring: so that a soup is made anew once in so many edits that all together bring as much as it
-/// has.
-constexpr std::uint32_t kLeastSpare = 1024;
-
-struct Surfaces {
-  std::vector<Polygon> polygons;
-  std::vector<Role> roles;
-  std::vector<PolygonSoup::Rank> ranks;  ///< the object's number, then that in the object
-
-  PolygonSoup::Arrival arrival() const { return {polygons, roles, ranks}; }
-};
-
-Surfaces surfaces_in(const Scene& scene, EditedScene::Range range) {
-  Surfaces found;
-  for (std::uint32_t k = range.first; k < range.last; ++k) {
-    const Surface& surface = scene.surfaces[k];
-    const bool continues = k > range.first && scene.surfaces[k - 1].object == surface.object;
-    found.polygons.push_back(surface.polygon);
-    found.roles.push_back(surface.obstruction_only ? Role::sheet : Role::patch);
-    found.ranks.push_back(continues ? found.ranks.back() + 1 : PolygonSoup::Rank{surface.object} << 32);
-  }
-  return found;
-}
-
-PolygonSoup soup_of(const Scene& scene) {
-  const auto count = static_cast<std::uint32_t>(scene.surfaces.size());
-  const Surfaces all = surfaces_in(scene, {0, count});
-  return PolygonSoup(all.polygons, all.roles, all.ranks, std::max(kLeastSpare, count));
-}
-
-/// After an edit of the object in the slot; made anew where it must be.
-PolygonSoup soup_after(const PolygonSoup& before, const ObjectSlot& slot, const EditedScene& scene,
-                       std::uint32_t object) {
-  const PolygonSoup::PolygonRange gone = slot.present ? slot.polygons : PolygonSoup::PolygonRange{};
-  const Surfaces arriving = surfaces_in(scene.scene(), scene.surfaces_of(object));
-  if (auto soup = PolygonSoup::edited(before, gone, arriving.arrival())) return std::move(*soup);
-  return soup_of(scene.scene());
-}
 
 Contacts contacts_of(const PolygonSoup& soup, const PolygonSoup& before, const Contacts& contacts_before) {
   return soup.shares_with(before) ? Contacts(contacts_before, soup) : Contacts(soup);
@@ -52,7 +15,7 @@ Contacts contacts_of(const PolygonSoup& soup, const PolygonSoup& before, const C
 }  // namespace
 
 SceneVersion::SceneVersion(const EditedScene& scene, const MeshOptions& options)
-    : soup_(soup_of(scene.scene())),
+    : soup_(make_soup(scene, objects_of(scene))),
       mesh_(make_patch_mesh(scene.scene(), soup_, options)),
       visibility_(mesh_, soup_),
       slots_(scene.scene().objects.size()),
@@ -80,7 +43,9 @@ SceneVersion::SceneVersion(const EditedScene& scene, const MeshOptions& options)
 SceneVersion::SceneVersion(const SceneVersion& before, const EditedScene& scene, const MeshOptions& options,
                            std::uint32_t object)
     : serial_(before.serial_ + 1),
-      soup_(soup_after(before.soup_, before.slots_[object], scene, object)),
+      soup_(soup_after(before.soup_,
+                       before.slots_[object].present ? before.slots_[object].polygons : PolygonSoup::PolygonRange{},
+                       scene, object, objects_of(scene))),
       visibility_(mesh_, soup_, contacts_of(soup_, before.soup_, before.visibility_.contacts())),
       slots_(before.slots_),
       observers_([this] { return visibility_.observer(); }),

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
+#include "src/scene/scene_soup.h"
 #include "src/visibility/convex_loop.h"
 #include "src/visibility/exact_visibility.h"
 
@@ -22,12 +24,44 @@ class Lap {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Objects as their facets stand, but for one, which comes last.
+std::vector<std::uint32_t> order_after(const Obstacles& before, const EditedScene& scene, std::uint32_t last) {
+  std::vector<std::uint32_t> order = objects_of(scene);
+  std::ranges::stable_sort(
+      order, {}, [&](std::uint32_t object) { return std::pair(object == last, before.facets_of(object).first); });
+  return order;
+}
+
 }  // namespace
 
-Obstacles::Obstacles(const EditedScene& scene) : soup_(make_soup(scene.scene())), contacts_(soup_) {
-  for (std::uint32_t object = 0; object < scene.scene().objects.size(); ++object) {
+Obstacles::Obstacles(const EditedScene& scene) : soup_(make_soup(scene, objects_of(scene))), contacts_(soup_) {
+  place(scene, objects_of(scene));
+}
+
+Obstacles::Obstacles(const Obstacles& before, const EditedScene& scene, std::uint32_t object)
+    : soup_(soup_after(before.soup_, before.polygons_[object], scene, object, order_after(before, scene, object))),
+      contacts_(soup_.shares_with(before.soup_) ? Contacts(before.contacts_, soup_) : Contacts(soup_)),
+      polygons_(before.polygons_),
+      facets_(before.facets_) {
+  if (soup_.shares_with(before.soup_)) {
+    polygons_[object] = soup_.arrived();
+    facets_[object] = {soup_.first_facet(polygons_[object].first), soup_.first_facet(polygons_[object].last)};
+  } else {
+    place(scene, order_after(before, scene, object));
+  }
+}
+
+/// Where objects are in a soup that was made in this order.
+void Obstacles::place(const EditedScene& scene, std::span<const std::uint32_t> order) {
+  polygons_.resize(order.size());
+  facets_.resize(order.size());
+  std::uint32_t first = 0;
+  for (const std::uint32_t object : order) {
     const EditedScene::Range range = scene.surfaces_of(object);
-    facets_.emplace_back(soup_.first_facet(range.first), soup_.first_facet(range.last));
+    const std::uint32_t last = first + range.last - range.first;
+    polygons_[object] = {first, last};
+    facets_[object] = {soup_.first_facet(first), soup_.first_facet(last)};
+    first = last;
   }
 }
 
@@ -60,6 +94,9 @@ LinkSight::LinkSight(const PatchTree& tree, const Obstacles& obstacles, unsigned
 }
 
 void LinkSight::set_shaft(std::uint32_t receiver, std::uint32_t source) {
+  if (shaft_of_ == std::pair(receiver, source)) return;
+  shaft_of_ = {receiver, source};
+  ++work_.shaft_tests;
   ShaftEnd to = shaft_end(tree_.node(receiver)), from = shaft_end(tree_.node(source));
   to.facet += facet_offset_[tree_.object_of(receiver)];
   from.facet += facet_offset_[tree_.object_of(source)];
@@ -85,7 +122,6 @@ Sight LinkSight::select(std::span<const std::uint32_t> items) {
 
 Sight LinkSight::between_roots(std::uint32_t receiver, std::uint32_t source) {
   const Lap lap(work_.seconds_shafts);
-  ++work_.shaft_tests;
   set_shaft(receiver, source);
   const Shaft::Overlap overlap = shaft_.find_occluders(found_);
   Sight sight;
@@ -100,7 +136,6 @@ Sight LinkSight::between_roots(std::uint32_t receiver, std::uint32_t source) {
 
 Sight LinkSight::between_roots(std::uint32_t receiver, std::uint32_t source, std::span<const std::uint32_t> items) {
   const Lap lap(work_.seconds_shafts);
-  ++work_.shaft_tests;
   set_shaft(receiver, source);
   return select(items);
 }
@@ -108,9 +143,20 @@ Sight LinkSight::between_roots(std::uint32_t receiver, std::uint32_t source, std
 Sight LinkSight::between(std::uint32_t receiver, std::uint32_t source, const Sight& parent) {
   if (parent.state != Sight::State::partial) return {parent.state, items_.size(), 0};
   const Lap lap(work_.seconds_shafts);
-  ++work_.shaft_tests;
   set_shaft(receiver, source);
   return select(items(parent));
+}
+
+bool LinkSight::touched(std::uint32_t receiver, std::uint32_t source, const Sight& parent,
+                        std::span<const std::uint32_t> some) {
+  if (parent.state != Sight::State::partial) return false;
+  found_.clear();
+  std::ranges::set_intersection(items(parent), some, std::back_inserter(found_));
+  if (found_.empty()) return false;
+  const Lap lap(work_.seconds_shafts);
+  set_shaft(receiver, source);
+  return std::ranges::any_of(found_,
+                             [&](std::uint32_t item) { return shaft_.overlap(item) != Shaft::Overlap::outside; });
 }
 
 /// Takes from the last sight what the one above it does not have.

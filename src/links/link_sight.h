@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/shaft.h"
@@ -17,6 +18,10 @@ namespace exitance {
 class Obstacles {
  public:
   explicit Obstacles(const EditedScene& scene);
+  /// After an edit of the geometry of one object: takes time by what that changes, where the soup can share with the
+  /// one before (scene_soup.h). Of several objects that changed at once, one after the other. All facets but the
+  /// object's stand in the same order as before, so that what is seen past them adds up to the same bits.
+  Obstacles(const Obstacles& before, const EditedScene& scene, std::uint32_t object);
   Obstacles(const Obstacles&) = delete;  // contacts refer to the soup
   Obstacles& operator=(const Obstacles&) = delete;
 
@@ -28,10 +33,15 @@ class Obstacles {
   std::size_t objects() const { return facets_.size(); }
   /// The object's facets, first … last − 1.
   std::pair<std::uint32_t, std::uint32_t> facets_of(std::uint32_t object) const { return facets_[object]; }
+  /// By object, its polygons in the soup.
+  std::span<const PolygonSoup::PolygonRange> polygons() const { return polygons_; }
 
  private:
+  void place(const EditedScene& scene, std::span<const std::uint32_t> order);
+
   PolygonSoup soup_;
   Contacts contacts_;
+  std::vector<PolygonSoup::PolygonRange> polygons_;              ///< by object
   std::vector<std::pair<std::uint32_t, std::uint32_t>> facets_;  ///< by object
 };
 
@@ -79,6 +89,8 @@ class LinkSight {
   Sight between_alone(std::uint32_t receiver, std::uint32_t source, const Sight& parent);
   Sight between_alone(std::uint32_t receiver, std::uint32_t source, const Sight& parent,
                       std::span<const std::uint32_t> items);
+  /// Whether any of `some`, ascending, enters the shaft of a link, given what enters that of the link above.
+  bool touched(std::uint32_t receiver, std::uint32_t source, const Sight& parent, std::span<const std::uint32_t> some);
   void forget(const Sight& sight) { items_.resize(sight.first); }
   std::span<const std::uint32_t> items(const Sight& sight) const { return {items_.data() + sight.first, sight.count}; }
 
@@ -100,6 +112,7 @@ class LinkSight {
   unsigned per_edge_;
   std::vector<std::uint32_t> facet_offset_;  ///< by object: from the tree's numbers to the obstacles', modulo 2^32
   Shaft shaft_;
+  std::pair<std::uint32_t, std::uint32_t> shaft_of_{kNone, kNone};  ///< the nodes whose it is
   Viewpoint view_;
   std::vector<std::uint32_t> items_, found_, chosen_;
   std::vector<NodePoint> points_;

@@ -342,11 +342,15 @@ void Updater::visit(std::span<const Link> old, const Above& above, bool root) {
     const bool touched_before = here.before && here.before->count > 0;
     const bool has_stale = task_.any_stale && std::ranges::any_of(old, [](const Link& l) { return l.stale; });
     bool touched = false;
-    if (root && has_changed && !tests_all() && !touched_before && !has_stale) {
+    if (has_changed && !tests_all() && !blocked_above && !touched_before && !has_stale && !here.forced) {
       // Most shafts are not entered by what moved: that alone is asked first.
-      const Sight of_changed = sight_.between_roots(pair.receiver, pair.source, changed_now_.items);
-      touched = of_changed.count > 0;
-      sight_.forget(of_changed);
+      if (root) {
+        const Sight of_changed = sight_.between_roots(pair.receiver, pair.source, changed_now_.items);
+        touched = of_changed.count > 0;
+        sight_.forget(of_changed);
+      } else {
+        touched = sight_.touched(pair.receiver, pair.source, above.sight, changed_now_.items);
+      }
       if (!touched) {
         forget();
         return copy(old);

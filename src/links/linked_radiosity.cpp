@@ -143,10 +143,11 @@ LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod metho
   const auto any = [](const std::vector<std::uint8_t>& of) { return std::ranges::find(of, 1) != of.end(); };
   LinkUpdate update;
   if (any(moved_)) {
-    before_ = std::exchange(obstacles_, std::make_unique<Obstacles>(scene_));
+    before_ = std::move(obstacles_);
     for (std::uint32_t object = 0; object < moved_.size(); ++object) {
       if (moved_[object] == 0) continue;
-      tree_.change_geometry(scene_, obstacles_->soup(), object);
+      obstacles_ = std::make_unique<Obstacles>(obstacles_ ? *obstacles_ : *before_, scene_, object);
+      tree_.change_geometry(scene_, obstacles_->soup(), obstacles_->polygons(), object);
       radiosity_.change_geometry(scene_, object);
     }
   }

@@ -70,17 +70,18 @@ PatchTree::PatchTree(const EditedScene& scene, const PolygonSoup& soup, const Tr
   facet_first_.resize(objects);
   for (std::uint32_t object = 0; object < objects; ++object) {
     std::vector<std::uint32_t> surfaces;
-    const std::vector<Node> nodes = root_nodes(scene, soup, object, surfaces);
+    const std::vector<Node> nodes = root_nodes(scene, soup, scene.surfaces_of(object).first, object, surfaces);
     append(nodes, surfaces, object);
     facet_first_[object] = soup.first_facet(scene.surfaces_of(object).first);
   }
 }
 
-/// The roots of an object as it stands, and the surface of each within the object.
-std::vector<Node> PatchTree::root_nodes(const EditedScene& scene, const PolygonSoup& soup, std::uint32_t object,
-                                        std::vector<std::uint32_t>& surfaces) const {
+/// The roots of an object as it stands, whose polygons in the soup begin with `polygon`, and the surface of each within
+/// the object.
+std::vector<Node> PatchTree::root_nodes(const EditedScene& scene, const PolygonSoup& soup, std::uint32_t polygon,
+                                        std::uint32_t object, std::vector<std::uint32_t>& surfaces) const {
   const EditedScene::Range range = scene.surfaces_of(object);
-  const PatchMesh mesh = make_patch_mesh(scene.scene(), soup, options_.mesh, range.first, range.last, range.first);
+  const PatchMesh mesh = make_patch_mesh(scene.scene(), soup, options_.mesh, range.first, range.last, polygon);
   std::vector<Node> roots;
   for (const Patch& patch : mesh.patches) {
     for (const PatchPiece& piece : mesh.pieces_of(patch)) {
@@ -148,9 +149,9 @@ void PatchTree::place_children(std::uint32_t node) {
 }
 
 /// Brings the numbers of facets from those of the soup before to those of the soup as it is.
-void PatchTree::number_facets(const EditedScene& scene, const PolygonSoup& soup) {
+void PatchTree::number_facets(const PolygonSoup& soup, std::span<const PolygonSoup::PolygonRange> polygons) {
   for (std::uint32_t object = 0; object < facet_first_.size(); ++object) {
-    const std::uint32_t first = soup.first_facet(scene.surfaces_of(object).first);
+    const std::uint32_t first = soup.first_facet(polygons[object].first);
     const std::uint32_t offset = first - std::exchange(facet_first_[object], first);
     if (offset == 0) continue;
     for (std::uint32_t r = root_first_[object]; r < root_first_[object] + root_count_[object]; ++r) {
@@ -159,15 +160,16 @@ void PatchTree::number_facets(const EditedScene& scene, const PolygonSoup& soup)
   }
 }
 
-void PatchTree::change_geometry(const EditedScene& scene, const PolygonSoup& soup, std::uint32_t object) {
+void PatchTree::change_geometry(const EditedScene& scene, const PolygonSoup& soup,
+                                std::span<const PolygonSoup::PolygonRange> polygons, std::uint32_t object) {
   const auto roots = std::span(roots_).subspan(root_first_[object], root_count_[object]);
   if (!scene.is_present(object)) {
     for (Root& root : roots) root.present = false;
-    number_facets(scene, soup);
+    number_facets(soup, polygons);
     return;
   }
   std::vector<std::uint32_t> surfaces;
-  const std::vector<Node> placed = root_nodes(scene, soup, object, surfaces);
+  const std::vector<Node> placed = root_nodes(scene, soup, polygons[object].first, object, surfaces);
   bool same = placed.size() == roots.size();
   for (std::size_t r = 0; same && r < placed.size(); ++r) {
     const Node& old = nodes_[roots[r].node_first];
@@ -189,8 +191,8 @@ void PatchTree::change_geometry(const EditedScene& scene, const PolygonSoup& sou
       }
     }
   }
-  facet_first_[object] = soup.first_facet(scene.surfaces_of(object).first);
-  number_facets(scene, soup);
+  facet_first_[object] = soup.first_facet(polygons[object].first);
+  number_facets(soup, polygons);
 }
 
 void node_points(const Node& node, unsigned per_edge, std::vector<NodePoint>& points) {

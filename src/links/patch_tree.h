@@ -54,10 +54,11 @@ class PatchTree {
   /// there would be more nodes than 2^31, and what make_patch_mesh throws.
   PatchTree(const EditedScene& scene, const PolygonSoup& soup, const TreeOptions& options);
 
-  /// After an edit of the geometry of an object; soup: of the scene as it is now. All other nodes keep their numbers
-  /// and places. The object's keep their numbers where it has as many roots as before of nearly the same areas (1e-6,
+  /// After an edit of the geometry of an object; soup: of the scene as it is now, and each object's polygons there. All
+  /// other nodes keep their numbers and places. The object's keep their numbers where it has as many roots as before of nearly the same areas (1e-6,
   /// relative); otherwise they are void and it has new ones behind all others.
-  void change_geometry(const EditedScene& scene, const PolygonSoup& soup, std::uint32_t object);
+  void change_geometry(const EditedScene& scene, const PolygonSoup& soup,
+                       std::span<const PolygonSoup::PolygonRange> polygons, std::uint32_t object);
 
   std::span<const Node> nodes() const { return nodes_; }
   std::span<const Root> roots() const { return roots_; }
@@ -68,11 +69,11 @@ class PatchTree {
   std::uint32_t facet_first(std::uint32_t object) const { return facet_first_[object]; }
 
  private:
-  std::vector<Node> root_nodes(const EditedScene& scene, const PolygonSoup& soup, std::uint32_t object,
-                               std::vector<std::uint32_t>& surfaces) const;
+  std::vector<Node> root_nodes(const EditedScene& scene, const PolygonSoup& soup, std::uint32_t polygon,
+                               std::uint32_t object, std::vector<std::uint32_t>& surfaces) const;
   void append(const std::vector<Node>& root_nodes, const std::vector<std::uint32_t>& surfaces, std::uint32_t object);
   void place_children(std::uint32_t node);
-  void number_facets(const EditedScene& scene, const PolygonSoup& soup);
+  void number_facets(const PolygonSoup& soup, std::span<const PolygonSoup::PolygonRange> polygons);
 
   TreeOptions options_;
   std::vector<Node> nodes_;
