@@ -1,4 +1,4 @@
-#include "tests/form_factor/exchange_truth.h"
+#include "src/stress/exchange_truth.h"
 
 #include <algorithm>
 #include <array>
