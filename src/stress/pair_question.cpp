@@ -8,7 +8,15 @@
 namespace exitance {
 namespace {
 
-constexpr double kTolerance = 1e-6;
+constexpr double kTolerance = 1e-4;
+
+Verdict judge(const Opinion& opinion, const PairOracleAnswer& truth) {
+  constexpr long double kLeast = 1e-15L;
+  const long double apart = std::fabs(opinion.F - truth.F), back = std::fabs(opinion.F_reverse - truth.F_reverse);
+  const bool is_within = apart <= opinion.margin + truth.error && back <= opinion.reverse_margin + truth.reverse_error;
+  const long double beyond = std::fmax(0.0L, apart - truth.error);
+  return {!is_within, static_cast<double>(beyond), truth.F >= kLeast ? static_cast<double>(beyond / truth.F) : 0};
+}
 
 }  // namespace
 
@@ -32,21 +40,16 @@ Opinion ask_pair(const Question& question, bool both_ways) {
 }
 
 Truth pair_truth(const Question& question) {
-  const PairOracleAnswer truth = oracle_pair_form_factors(question);
+  const PairOracleAnswer truth = oracle_pair_form_factors(question, Care::sampled);
   Question free = question;
   free.occluders.clear();
-  const PairOracleAnswer open = oracle_pair_form_factors(free);
+  const PairOracleAnswer open = oracle_pair_form_factors(free, Care::sampled);
   const Truth::Seen seen = truth.F <= truth.error                         ? Truth::Seen::none
                            : open.F - truth.F <= open.error + truth.error ? Truth::Seen::all
                                                                           : Truth::Seen::some;
-  return {seen, static_cast<double>(truth.F), [truth](const Opinion& opinion) {
-            constexpr long double kLeast = 1e-15L;
-            const long double apart = std::fabs(opinion.F - truth.F);
-            const long double apart_back = std::fabs(opinion.F_reverse - truth.F_reverse);
-            const bool is_within =
-                apart <= opinion.margin + truth.error && apart_back <= opinion.reverse_margin + truth.reverse_error;
-            return Verdict{!is_within, static_cast<double>(apart),
-                           truth.F >= kLeast ? static_cast<double>(apart / truth.F) : 0};
+  return {seen, static_cast<double>(truth.F), [question, truth](const Opinion& opinion) {
+            const Verdict verdict = judge(opinion, truth);
+            return verdict.is_wrong ? judge(opinion, oracle_pair_form_factors(question, Care::full)) : verdict;
           }};
 }
 

@@ -92,7 +92,7 @@ class StressRun {
 
   StressReport run() {
     const auto start = Clock::now();
-    constexpr std::uint64_t kBatch = 512;
+    const std::uint64_t batch = options_.kind->of_areas ? 16 : 512;  // so that it can be stopped
     StressReport report;
     report.kind = options_.kind;
     std::uint64_t done = 0;
@@ -101,10 +101,11 @@ class StressRun {
         report.complete = false;
         break;
       }
-      const std::uint64_t end = std::min(options_.count, done + kBatch);
-      tbb::parallel_for(tbb::blocked_range<std::uint64_t>(done, end, 8), [&](const auto& some) {
-        for (std::uint64_t k = some.begin(); k < some.end(); ++k) ask(options_.first + k);
-      });
+      const std::uint64_t end = std::min(options_.count, done + batch);
+      tbb::parallel_for(tbb::blocked_range<std::uint64_t>(done, end, options_.kind->of_areas ? 1 : 8),
+                        [&](const auto& some) {
+                          for (std::uint64_t k = some.begin(); k < some.end(); ++k) ask(options_.first + k);
+                        });
       done = end;
       if (options_.progress)
         options_.progress(static_cast<double>(done) / static_cast<double>(options_.count), "questions");
@@ -186,7 +187,12 @@ class StressRun {
         tally.wrong = 1;
         wrong.push_back({number, c, names_.size(), true});
       } else if (truth) {
-        const Verdict verdict = truth->judge(opinion);
+        Verdict verdict;
+        if (const auto exception = exception_of([&] { verdict = truth->judge(opinion); })) {
+          tally.unjudged = 1;
+          const std::lock_guard lock(mutex_);
+          unjudged_.push_back({number, contender.name + ": " + *exception});
+        }
         tally.wrong = verdict.is_wrong ? 1 : 0;
         tally.worst_error = verdict.error;
         tally.worst_relative_error = verdict.relative_error;
@@ -226,7 +232,9 @@ class StressRun {
   }
 
   std::vector<UnjudgedQuestion> unjudged() {
-    std::ranges::sort(unjudged_, {}, &Unjudged::number);
+    std::ranges::sort(unjudged_, [](const Unjudged& a, const Unjudged& b) {
+      return std::tie(a.number, a.exception) < std::tie(b.number, b.exception);
+    });
     if (unjudged_.size() > options_.failures_kept) unjudged_.resize(options_.failures_kept);
     std::vector<UnjudgedQuestion> questions;
     for (const Unjudged& u : unjudged_) {
