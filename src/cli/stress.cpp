@@ -22,8 +22,11 @@
 namespace exitance {
 namespace {
 
-std::string family_list() {
-  std::string text = "Families:\n";
+std::string lists() {
+  std::string text = "Kinds of questions, and who can be asked:\n";
+  for (const QuestionKind& kind : question_kinds())
+    text += fmt::format("  {:<18}{}: {}\n", kind.name, kind.what, kind.contender_names);
+  text += "Families:\n";
   for (const QuestionFamily& family : question_families()) {
     text += "  " + family.name + std::string(family.name.size() < 18 ? 18 - family.name.size() : 1, ' ') + family.what +
             "\n";
@@ -36,6 +39,9 @@ class Stress {
   explicit Stress(CLI::App& verb) : verb_(verb) {
     verb.add_option("--family", options_.families, "Families of questions, separated by commas; all without it")
         ->delimiter(',');
+    verb.add_option("--question", kind_, "What is asked about the same scenes")
+        ->check(CLI::IsMember({"points", "shafts", "shadows", "pairs"}))
+        ->capture_default_str();
     verb.add_option("--count", options_.count, "Questions, spread over families and magnitudes")
         ->check(whole_number_between(1))
         ->capture_default_str();
@@ -46,10 +52,11 @@ class Stress {
         ->check(whole_number_between(0))
         ->capture_default_str();
     verb.add_option("--contender", contenders_,
-                    "Who is asked, separated by commas: exact, plain-double, rays:N, rays:N:fast, cgal-epeck")
+                    "Who is asked, separated by commas; of points exact, plain-double, rays:N, rays:N:fast, cgal-epeck")
         ->delimiter(',')
         ->capture_default_str();
-    verb.add_option("--against", against_, "oracle: CGAL's Boolean operations; properties: forms of the same question")
+    verb.add_option("--against", against_,
+                    "oracle: the answer by another route; properties: forms of the same question")
         ->check(CLI::IsMember({"oracle", "properties", "both"}))
         ->capture_default_str();
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
@@ -57,15 +64,21 @@ class Stress {
     verb.add_flag("--json", json_, "Print the report as JSON");
     verb.add_option("-o,--output", folder_,
                     "Folder for stress.json, stress.csv, stress.svg, and failures.json, which `cases` replays");
-    verb.footer(family_list() +
-                "Magnitudes: how far things are moved from the degenerate position, of a stage whose lengths are 1 to "
-                "16.\nExit code 1: an answer is wrong or a property broken, of any contender asked.");
+    verb.footer(
+        lists() +
+        "Magnitudes: how far things are moved from the degenerate position, of a stage whose lengths are 1 to "
+        "16.\nOf shafts and shadows failures.json has the polygons, for `cases` to compute what they exchange; the "
+        "object of "
+        "a question of shadows is the first half of the occluders.\n"
+        "Exit code 1: an answer is wrong or a property broken, of any contender asked. What the oracle fails on "
+        "is counted as not judged.");
   }
 
   void run() {
     std::optional<tbb::global_control> limit;
     if (threads_) limit.emplace(tbb::global_control::max_allowed_parallelism, *threads_);
     catch_interrupts();
+    options_.kind = &question_kind_named(kind_);
     for (const std::string& name : contenders_) add_contender(name);
     options_.oracle = against_ != "properties";
     options_.properties = against_ != "oracle";
@@ -97,9 +110,9 @@ class Stress {
 
  private:
   void add_contender(const std::string& name) {
-    if (std::ranges::find(options_.contenders, name, &PointContender::name) != options_.contenders.end())
+    if (std::ranges::find(options_.contenders, name, &Contender::name) != options_.contenders.end())
       throw CLI::ValidationError("--contender", name + " is named twice");
-    options_.contenders.push_back(point_contender_named(name));
+    options_.contenders.push_back(options_.kind->contender_named(name));
     if (against_ == "properties" && !options_.contenders.back().has_properties)
       throw CLI::ValidationError("--against", "no properties are asked of " + name + "; give --against oracle");
   }
@@ -113,7 +126,7 @@ class Stress {
   CLI::App& verb_;
   StressOptions options_;
   std::vector<std::string> contenders_{"exact"};
-  std::string against_ = "both", folder_;
+  std::string kind_ = "points", against_ = "both", folder_;
   std::optional<std::size_t> threads_;
   bool json_ = false;
 };

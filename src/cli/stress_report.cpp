@@ -28,7 +28,7 @@ Json polygon(const Polygon& p) {
   return json;
 }
 
-Json one_case(const std::string& id, const PointQuestion& question) {
+Json occluders_of(const Question& question) {
   Json occluders = Json::array();
   for (const Obstacle& obstacle : question.occluders) {
     if (!obstacle.solid) {
@@ -39,15 +39,22 @@ Json one_case(const std::string& id, const PointQuestion& question) {
     for (const Polygon& face : obstacle.faces) faces.push_back(loop(face.outer));
     occluders.push_back({{"polyhedron", faces}});
   }
-  return {{"id", id},
-          {"kind", "point_polygon"},
-          {"receiver", {{"point", point(question.point)}, {"normal", point(question.normal)}}},
-          {"source", polygon(question.source)},
-          {"occluders", occluders}};
+  return occluders;
 }
 
-Json properties_of(const StressTally& tally) {
-  const std::vector<std::string> names = property_names();
+Json one_case(const std::string& id, const Question& question) {
+  const bool of_areas = !question.receiver.outer.empty();
+  const Json receiver = of_areas ? polygon(question.receiver)
+                                 : Json{{"point", point(question.point)}, {"normal", point(question.normal)}};
+  return {{"id", id},
+          {"kind", of_areas ? "polygon_polygon" : "point_polygon"},
+          {"receiver", receiver},
+          {"source", polygon(question.source)},
+          {"occluders", occluders_of(question)}};
+}
+
+Json properties_of(const QuestionKind& kind, const StressTally& tally) {
+  const std::vector<std::string> names = property_names(kind);
   Json json = Json::object();
   for (std::size_t p = 0; p < tally.properties.size(); ++p) {
     const PropertyTally& property = tally.properties[p];
@@ -56,9 +63,10 @@ Json properties_of(const StressTally& tally) {
   return json;
 }
 
-Json of_tally(const StressTally& t) {
+Json of_tally(const QuestionKind& kind, const StressTally& t) {
   return {{"questions", t.questions},
           {"seen", {{"none", t.none}, {"some", t.some}, {"all", t.all}}},
+          {"unjudged", t.unjudged},
           {"wrong", t.wrong},
           {"worst_value_error", t.worst_error},
           {"worst_relative_error", t.worst_relative_error},
@@ -67,7 +75,7 @@ Json of_tally(const StressTally& t) {
           {"extended", t.extended},
           {"seconds", t.seconds},
           {"properties_broken", t.broken()},
-          {"properties", properties_of(t)}};
+          {"properties", properties_of(kind, t)}};
 }
 
 /// Of one contender, by family, over all departures.
@@ -105,8 +113,9 @@ std::string family_in_words(const std::string& family, const std::vector<const S
 std::string contender_in_words(const StressReport& report, const std::string& contender) {
   const StressTally sum = report.total(contender);
   std::string text = fmt::format(
-      "{}: {} questions ({} see nothing, {} some, {} all), {} wrong, worst error {:.3g}, relative {:.3g}\n", contender,
-      sum.questions, sum.none, sum.some, sum.all, sum.wrong, sum.worst_error, sum.worst_relative_error);
+      "{}: {} {} ({} see nothing, {} some, {} all, {} not judged), {} wrong, worst error {:.3g}, relative {:.3g}\n",
+      contender, sum.questions, report.kind->name, sum.none, sum.some, sum.all, sum.unjudged, sum.wrong,
+      sum.worst_error, sum.worst_relative_error);
   std::string departing;
   for (const Departure& d : departures()) departing += fmt::format("{:>8}", d.name);
   text += fmt::format("  {:<17}{:>9}{}{:>10}{:>10}{:>8}{:>10}{:>9}{:>9}{:>9}\n", "wrong by family", "questions",
@@ -114,7 +123,7 @@ std::string contender_in_words(const StressReport& report, const std::string& co
   for (const auto& [family, rows] : by_family(report, contender)) text += family_in_words(family, rows);
   if (sum.tried() == 0) return text;
   text += fmt::format("  {:<17}{:>10}{:>8}{:>10}\n", "property", "tried", "broken", "defect");
-  const std::vector<std::string> names = property_names();
+  const std::vector<std::string> names = property_names(*report.kind);
   for (std::size_t p = 0; p < sum.properties.size(); ++p) {
     const PropertyTally& property = sum.properties[p];
     if (property.tried > 0)
@@ -145,12 +154,12 @@ std::string to_json(const StressSummary& summary) {
   json["rows"] = Json::array();
   for (const StressRow& row : report.rows) {
     Json of_row{{"family", row.family}, {"magnitude", row.departure}, {"contender", row.contender}};
-    of_row.update(of_tally(row.tally));
+    of_row.update(of_tally(*report.kind, row.tally));
     json["rows"].push_back(of_row);
   }
   json["contenders"] = Json::object();
   for (const std::string& contender : summary.contenders)
-    json["contenders"][contender] = of_tally(report.total(contender));
+    json["contenders"][contender] = of_tally(*report.kind, report.total(contender));
   json["failures"] = Json::array();
   for (const StressFailure& failure : report.failures) {
     json["failures"].push_back({{"question", failure.question},
@@ -160,7 +169,11 @@ std::string to_json(const StressSummary& summary) {
                                 {"F", failure.F},
                                 {"truth", failure.truth ? Json(*failure.truth) : Json(nullptr)}});
   }
+  json["not_judged"] = Json::array();
+  for (const UnjudgedQuestion& u : report.unjudged)
+    json["not_judged"].push_back({{"question", u.question}, {"exception", u.exception}});
   const StressTally total = summary.total();
+  json["kind"] = report.kind->name;
   json["seconds"] = report.seconds;
   json["complete"] = report.complete;
   json["questions"] = report.questions;
@@ -178,6 +191,9 @@ std::string in_words(const StressSummary& summary) {
     text += failure.exception.empty() ? fmt::format("F = {:.17g}", failure.F) : "throws: " + failure.exception;
     text += failure.truth ? fmt::format(", truth {:.17g}\n", *failure.truth) : "\n";
   }
+  std::map<std::string, std::uint64_t> exceptions;
+  for (const UnjudgedQuestion& u : summary.report.unjudged) ++exceptions[u.exception];
+  for (const auto& [exception, count] : exceptions) text += fmt::format("not judged, {} times: {}\n", count, exception);
   const StressTally total = summary.total();
   text += fmt::format("{} questions in {:.3g} s: {} answers wrong, worst error {:.3g}; {} of {} properties broken\n",
                       summary.report.questions, summary.report.seconds, total.wrong, total.worst_error, total.broken(),

@@ -20,8 +20,8 @@ struct StressSummary {
 
 std::string to_json(const StressSummary& summary);
 std::string in_words(const StressSummary& summary);
-/// {"cases": [...]}: each failure, and after it the forms of it that a property compares it with. `truth` beside the
-/// question is what the oracle says.
+/// {"cases": [...]}: each failure, and after it the forms of it that a property compares it with; those of areas as
+/// polygon_polygon. `truth` beside the question is what the oracle says, where that is a number.
 std::string failures_as_cases(const StressReport& report);
 
 }  // namespace exitance

@@ -69,7 +69,7 @@ RayOptions options_of(const std::string& name) {
 
 }  // namespace
 
-PointContender point_contender_named(const std::string& name) {
+Contender point_contender_named(const std::string& name) {
   if (name == "exact") return {name, ask_exactly, true, true};
   if (name == "plain-double") return {name, ask_plainly, false, true};
   if (name == "cgal-epeck") return {name, ask_oracle, true, false};

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "src/stress/placement.h"
-#include "src/stress/point_contender.h"
+#include "src/stress/contender.h"
+#include "src/stress/question_form.h"
 
 namespace exitance {
 
@@ -23,18 +23,25 @@ struct Property {
   std::string name;
   std::string what;  ///< in one line
   /// Forms of the question that the property is about, drawn at random; empty where it does not apply.
-  std::vector<PointQuestion> (*forms)(const PointQuestion& question, Random& random);
+  Forms (*forms)(const Question& question, Random& random);
   PropertyTrial (*judge)(const Opinion& opinion, std::span<const Opinion> of_forms);
 };
 
-/// permuted, split, duplicated, reversed, triangulated, as_sheets, scaled, translated, renumbered, added, pieces.
-std::span<const Property> properties();
+/// permuted, split, duplicated, reversed, triangulated, as_sheets, scaled, translated, renumbered, added, pieces: of F.
+std::span<const Property> point_properties();
+/// The same of pairs, and swapped: F and F back change places.
+std::span<const Property> pair_properties();
+/// Of Opinion::visibility. What is cut, turned over or taken to pieces is as open as before; it may be blocked by
+/// several things together then.
+std::span<const Property> shaft_properties();
+/// Those that leave the object the same.
+std::span<const Property> shadow_properties();
 
-using AskPoint = std::function<Opinion(const PointQuestion&)>;
+using Ask = std::function<Opinion(const Question&)>;
 
 /// Asks; nothing where the property does not apply.
-std::optional<PropertyTrial> try_property(const Property& property, const PointQuestion& question,
-                                          const Opinion& opinion, const AskPoint& ask, Random& random);
+std::optional<PropertyTrial> try_property(const Property& property, const Question& question, const Opinion& opinion,
+                                          const Ask& ask, Random& random);
 
 /// Puts a closed room around the question, makes patches of everything, and sums the form factors of all fronts and
 /// backs that the point sees: by how much the sum misses 1, and the bounds of all of its terms.

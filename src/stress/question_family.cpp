@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <utility>
 
 namespace exitance {
 namespace {
@@ -513,115 +510,7 @@ void outside(Stage& s) {
   s.add_something();
 }
 
-// --- Into space ---------------------------------------------------------------------------------------------------
-
-template <class Move>
-void move_all(Obstacle& obstacle, const Move& move) {
-  for (Polygon& face : obstacle.faces) {
-    for (Vec3& v : face.outer) v = move(v);
-    for (Loop& hole : face.holes) std::ranges::transform(hole, hole.begin(), move);
-  }
-}
-
-/// Moves points at random, equal ones alike.
-class Jitter {
- public:
-  template <class Move>
-  Vec3 operator()(const Vec3& v, const Move& move) {
-    for (const auto& [from, to] : moved_) {
-      if (from == v) return to;
-    }
-    moved_.push_back({v, move(v)});
-    return moved_.back().second;
-  }
-
- private:
-  std::vector<std::pair<Vec3, Vec3>> moved_;
-};
-
-/// Moves some of the sheets, solids, the source and the point, each as a whole: its faces stay together.
-template <class Move>
-void depart(PointQuestion& question, Random& random, const Move& move) {
-  for (Obstacle& obstacle : question.occluders) {
-    if (random.whole(0, 3) == 0) continue;
-    Jitter jitter;
-    move_all(obstacle, [&](const Vec3& v) { return jitter(v, move); });
-  }
-  if (random.whole(0, 2) == 0) {
-    Jitter jitter;
-    Obstacle source{{question.source}, false};
-    move_all(source, [&](const Vec3& v) { return jitter(v, move); });
-    question.source = source.faces[0];
-  }
-  if (random.whole(0, 3) == 0) question.point = move(question.point);
-}
-
-Placement random_placement(Random& random, bool is_exact) {
-  static const std::array<Vec3, 3> kNear{Vec3{}, {5, -3, 7}, {0.1, 0.2, 0.3}};
-  static const std::array<Vec3, 4> kFar{Vec3{1003, -2001, 1507},
-                                        {1000003, -2000001, 1500007},
-                                        {-100000007, 30000001, 50000003},
-                                        {1000000007, -300000001, 500000003}};
-  static const std::array<std::pair<const char*, double>, 9> kScales{{{"", 1},
-                                                                      {"", 1},
-                                                                      {"", 1},
-                                                                      {"_1e-12", 1e-12},
-                                                                      {"_1e-3", 1e-3},
-                                                                      {"_1e12", 1e12},
-                                                                      {"_2^-40", 0x1p-40},
-                                                                      {"_2^400", 0x1p400},
-                                                                      {"_2^-400", 0x1p-400}}};
-  const bool is_far = random.whole(0, 2) == 0;
-  const Vec3 origin =
-      is_far ? kFar[static_cast<std::size_t>(random.whole(0, 3))] : kNear[static_cast<std::size_t>(random.whole(0, 2))];
-  const auto& [scale_name, scale] = kScales[static_cast<std::size_t>(random.whole(0, 8))];
-  const std::string name = (is_far ? "_far" : "") + std::string(scale_name);
-  switch (random.whole(0, is_exact ? 9 : 8)) {
-    case 0:
-      return {"lattice" + name, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, origin, scale};
-    case 1:
-      return {"tilted" + name, {2, 1, -1}, {-1, 3, 1}, {1, -1, 2}, origin, scale};
-    case 2:
-      return {"turned" + name, {1, 2, 2}, {2, 1, -2}, {-2, 2, -1}, origin, scale};
-    case 9:  // twelve bits above the smallest number
-      return {"denormal", {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}, 0x1p-1066};
-    default:
-      return random_rotation("rotated" + name, origin, scale, random);
-  }
-}
-
-/// A move of every coordinate by an ulp up, down, or not; from 0 by an ulp of the vertex's largest coordinate.
-Vec3 by_an_ulp(Vec3 v, Random& random) {
-  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-  for (int axis = 0; axis < 3; ++axis) {
-    const int way = random.whole(-1, 1);
-    if (v[axis] == 0) {
-      v[axis] = way * 0x1p-53 * largest;
-    } else if (way != 0) {
-      v[axis] = std::nextafter(v[axis], way * std::numeric_limits<double>::infinity());
-    }
-  }
-  return v;
-}
-
-bool has_defect(const Polygon& polygon) {
-  const PolygonDefect defect = find_defect(polygon);
-  return defect != PolygonDefect::none && defect != PolygonDefect::zero_area;
-}
-
-bool is_usable(const PointQuestion& question) {
-  return !has_defect(question.source) && std::ranges::none_of(question.occluders, [](const Obstacle& o) {
-    return std::ranges::any_of(o.faces, has_defect);
-  });
-}
-
 }  // namespace
-
-std::span<const Departure> departures() {
-  static const std::array<Departure, 6> kDepartures{Departure{"none", 0}, {"ulp", 0x1p-52, true}, {"1e-12", 1e-12},
-                                                    {"1e-9", 1e-9},       {"1e-6", 1e-6},         {"1e-3", 1e-3}};
-  return kDepartures;
-}
 
 std::span<const QuestionFamily> question_families() {
   static const std::array kFamilies{
@@ -657,28 +546,6 @@ std::span<const QuestionFamily> question_families() {
       QuestionFamily{"soup", "anything on a coarse lattice", soup},
       QuestionFamily{"outside", "occluders beyond, behind and through everything", outside}};
   return kFamilies;
-}
-
-DrawnQuestion draw_question(const QuestionFamily& family, const Departure& departure, Random& random) {
-  constexpr int kTries = 1000;  // rounding may fold a narrow polygon
-  for (int k = 0; k < kTries; ++k) {
-    Stage stage(random, departure.size);
-    family.set_up(stage);
-    PointQuestion& question = stage.question;
-    if (departure.size > 0 && !departure.by_an_ulp && !family.departs_by_itself) {
-      depart(question, random, [&](const Vec3& v) {
-        return v + departure.size * Vec3{random.real(-1, 1), random.real(-1, 1), random.real(-1, 1)};
-      });
-    }
-    const Placement place = random_placement(random, departure.size == 0);
-    question.point = place(question.point);
-    question.normal = place.normal(question.normal);
-    question.source = place(question.source);
-    for (Obstacle& obstacle : question.occluders) move_all(obstacle, place);
-    if (departure.by_an_ulp) depart(question, random, [&](const Vec3& v) { return by_an_ulp(v, random); });
-    if (is_usable(question)) return {place.name, std::move(question)};
-  }
-  throw std::logic_error(family.name + ": no usable question in " + std::to_string(kTries) + " tries");
 }
 
 }  // namespace exitance

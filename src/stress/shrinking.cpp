@@ -11,9 +11,9 @@ bool is_usable(const Polygon& polygon) {
   return defect == PolygonDefect::none || defect == PolygonDefect::zero_area;
 }
 
-bool is_usable(const PointQuestion& question) {
-  return question.normal != Vec3{} && is_usable(question.source) &&
-         std::ranges::all_of(question.occluders, [](const Obstacle& o) {
+bool is_usable(const Question& question) {
+  return question.normal != Vec3{} && (question.receiver.outer.empty() || is_usable(question.receiver)) &&
+         is_usable(question.source) && std::ranges::all_of(question.occluders, [](const Obstacle& o) {
            return std::ranges::all_of(o.faces, [](const Polygon& face) { return is_usable(face); });
          });
 }
@@ -27,10 +27,10 @@ double rounded(double v, int bits) {
 
 class Shrinking {
  public:
-  Shrinking(PointQuestion question, const std::function<bool(const PointQuestion&)>& fails, std::size_t most_tries)
+  Shrinking(Question question, const std::function<bool(const Question&)>& fails, std::size_t most_tries)
       : smallest_(std::move(question)), fails_(fails), tries_left_(most_tries) {}
 
-  PointQuestion run() {
+  Question run() {
     for (bool smaller = true; smaller && tries_left_ > 0;) {
       smaller = drop_occluders();
       smaller = drop_parts() || smaller;
@@ -43,7 +43,7 @@ class Shrinking {
   template <class Change>
   bool accept(const Change& change) {
     if (tries_left_ == 0) return false;
-    PointQuestion smaller = smallest_;
+    Question smaller = smallest_;
     if (!change(smaller) || !is_usable(smaller)) return false;
     --tries_left_;
     if (!fails_(smaller)) return false;
@@ -54,7 +54,7 @@ class Shrinking {
   bool drop_occluders() {
     bool any = false;
     for (std::size_t k = smallest_.occluders.size(); k-- > 0;) {
-      any = accept([&](PointQuestion& q) {
+      any = accept([&](Question& q) {
               q.occluders.erase(q.occluders.begin() + static_cast<std::ptrdiff_t>(k));
               return true;
             }) ||
@@ -69,7 +69,7 @@ class Shrinking {
     for (std::size_t o = 0; o < smallest_.occluders.size(); ++o) {
       if (smallest_.occluders[o].solid) continue;
       for (std::size_t f = smallest_.occluders[o].faces.size(); f-- > 0;) {
-        any = accept([&](PointQuestion& q) {
+        any = accept([&](Question& q) {
                 auto& faces = q.occluders[o].faces;
                 if (faces.size() < 2) return false;
                 faces.erase(faces.begin() + static_cast<std::ptrdiff_t>(f));
@@ -78,21 +78,22 @@ class Shrinking {
               any;
       }
       for (std::size_t f = 0; f < smallest_.occluders[o].faces.size(); ++f) {
-        any = thin_out([o, f](PointQuestion& q) -> Polygon& { return q.occluders[o].faces[f]; }) || any;
+        any = thin_out([o, f](Question& q) -> Polygon& { return q.occluders[o].faces[f]; }) || any;
       }
     }
-    return thin_out([](PointQuestion& q) -> Polygon& { return q.source; }) || any;
+    any = thin_out([](Question& q) -> Polygon& { return q.receiver; }) || any;
+    return thin_out([](Question& q) -> Polygon& { return q.source; }) || any;
   }
 
   template <class Which>
   bool thin_out(const Which& which) {
-    bool any = accept([&](PointQuestion& q) {
+    bool any = accept([&](Question& q) {
       if (which(q).holes.empty()) return false;
       which(q).holes.clear();
       return true;
     });
     for (std::size_t k = which(smallest_).outer.size(); k-- > 0;) {
-      any = accept([&](PointQuestion& q) {
+      any = accept([&](Question& q) {
               auto& loop = which(q).outer;
               if (loop.size() < 4) return false;
               loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(k));
@@ -106,7 +107,7 @@ class Shrinking {
   /// All coordinates that are equal alike, so that what touches goes on touching.
   bool round_to(int bits) {
     std::vector<double> values;
-    const auto collect = [&](PointQuestion& q, const auto& visit) {
+    const auto collect = [&](Question& q, const auto& visit) {
       const auto visit_vertex = [&](Vec3& v) {
         for (int axis = 0; axis < 3; ++axis) visit(v[axis]);
       };
@@ -116,6 +117,7 @@ class Shrinking {
         std::ranges::for_each(p.outer, visit_vertex);
         for (auto& hole : p.holes) std::ranges::for_each(hole, visit_vertex);
       };
+      visit_polygon(q.receiver);
       visit_polygon(q.source);
       for (Obstacle& o : q.occluders) std::ranges::for_each(o.faces, visit_polygon);
     };
@@ -125,7 +127,7 @@ class Shrinking {
     bool any = false;
     for (const double value : values) {
       if (rounded(value, bits) == value) continue;
-      any = accept([&](PointQuestion& q) {
+      any = accept([&](Question& q) {
               collect(q, [&](double& v) {
                 if (v == value) v = rounded(v, bits);
               });
@@ -136,15 +138,14 @@ class Shrinking {
     return any;
   }
 
-  PointQuestion smallest_;
-  const std::function<bool(const PointQuestion&)>& fails_;
+  Question smallest_;
+  const std::function<bool(const Question&)>& fails_;
   std::size_t tries_left_;
 };
 
 }  // namespace
 
-PointQuestion shrink(PointQuestion question, const std::function<bool(const PointQuestion&)>& fails,
-                     std::size_t most_tries) {
+Question shrink(Question question, const std::function<bool(const Question&)>& fails, std::size_t most_tries) {
   return Shrinking(std::move(question), fails, most_tries).run();
 }
 

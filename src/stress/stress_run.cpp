@@ -13,7 +13,6 @@
 #include <tuple>
 
 #include "src/stress/shrinking.h"
-#include "src/stress/verdict.h"
 
 namespace exitance {
 namespace {
@@ -40,6 +39,11 @@ struct Found {
   bool threw = false;                   ///< instead of answering
 };
 
+struct Unjudged {
+  std::uint64_t number = 0;
+  std::string exception;
+};
+
 /// What an exception says; nothing where none is thrown.
 template <class Work>
 std::optional<std::string> exception_of(const Work& work) {
@@ -57,9 +61,22 @@ std::string list_of_families() {
   return names;
 }
 
+std::uint64_t& seen_by(const Truth& truth, StressTally& tally) {
+  switch (truth.seen) {
+    case Truth::Seen::none:
+      return tally.none;
+    case Truth::Seen::all:
+      return tally.all;
+    case Truth::Seen::some:
+      break;
+  }
+  return tally.some;
+}
+
 class StressRun {
  public:
-  explicit StressRun(const StressOptions& options) : options_(options), names_(property_names()) {
+  explicit StressRun(const StressOptions& options)
+      : options_(options), properties_(options.kind->properties()), names_(property_names(*options.kind)) {
     for (const QuestionFamily& family : question_families()) {
       if (options.families.empty() || std::ranges::find(options.families, family.name) != options.families.end())
         families_.push_back(&family);
@@ -75,24 +92,27 @@ class StressRun {
 
   StressReport run() {
     const auto start = Clock::now();
-    constexpr std::uint64_t kBatch = 512;
+    const std::uint64_t batch = options_.kind->of_areas ? 16 : 512;  // so that it can be stopped
     StressReport report;
+    report.kind = options_.kind;
     std::uint64_t done = 0;
     while (done < options_.count) {
       if (stopped()) {
         report.complete = false;
         break;
       }
-      const std::uint64_t end = std::min(options_.count, done + kBatch);
-      tbb::parallel_for(tbb::blocked_range<std::uint64_t>(done, end, 8), [&](const auto& some) {
-        for (std::uint64_t k = some.begin(); k < some.end(); ++k) ask(options_.first + k);
-      });
+      const std::uint64_t end = std::min(options_.count, done + batch);
+      tbb::parallel_for(tbb::blocked_range<std::uint64_t>(done, end, options_.kind->of_areas ? 1 : 8),
+                        [&](const auto& some) {
+                          for (std::uint64_t k = some.begin(); k < some.end(); ++k) ask(options_.first + k);
+                        });
       done = end;
       if (options_.progress)
         options_.progress(static_cast<double>(done) / static_cast<double>(options_.count), "questions");
     }
     report.questions = done;
     report.failures = failures();
+    report.unjudged = unjudged();
     report.complete = report.complete && !stopped();
     for (std::size_t c = 0; c < options_.contenders.size(); ++c) {
       for (std::size_t f = 0; f < families_.size(); ++f) {
@@ -120,28 +140,36 @@ class StressRun {
             family, departure};
   }
   DrawnQuestion drawn(const Named& what) const {
-    Random random(what.name);
-    return draw_question(*families_[what.family], departures()[what.departure], random);
+    Random random(what.name), of_receiver(what.name + "/receiver");
+    const QuestionFamily& family = *families_[what.family];
+    const Departure& departure = departures()[what.departure];
+    return options_.kind->of_areas ? draw_area_question(family, departure, random, of_receiver)
+                                   : draw_question(family, departure, random);
   }
 
-  std::optional<PropertyTrial> try_one(std::size_t property, const std::string& name, const PointContender& contender,
-                                       const PointQuestion& question, const Opinion& opinion) const {
+  std::optional<PropertyTrial> try_one(std::size_t property, const std::string& name, const Contender& contender,
+                                       const Question& question, const Opinion& opinion) const {
     if (names_[property] == kClosure) {
       if (contender.is_proven) return try_closure(question);
       return std::nullopt;
     }
     Random random(name + "/" + names_[property]);
-    const auto ask = [&](const PointQuestion& q) { return contender.ask(q, seed_of(name)); };
-    return try_property(properties()[property], question, opinion, ask, random);
+    const auto ask = [&](const Question& q) { return contender.ask(q, seed_of(name)); };
+    return try_property(properties_[property], question, opinion, ask, random);
   }
 
   void ask(std::uint64_t number) {
     const Named what = named(number);
-    const PointQuestion question = drawn(what).question;
-    std::optional<OracleAnswer> truth;
-    if (options_.oracle) truth = oracle_form_factor(question);
+    const Question question = drawn(what).question;
+    std::optional<Truth> truth;
+    if (options_.oracle) {
+      if (const auto exception = exception_of([&] { truth = options_.kind->truth(question); })) {
+        const std::lock_guard lock(mutex_);
+        unjudged_.push_back({number, *exception});
+      }
+    }
     for (std::size_t c = 0; c < options_.contenders.size(); ++c) {
-      const PointContender& contender = options_.contenders[c];
+      const Contender& contender = options_.contenders[c];
       StressTally tally;
       tally.properties.resize(names_.size());
       std::vector<Found> wrong;
@@ -153,12 +181,18 @@ class StressRun {
       tally.stages = opinion.stages;
       tally.extended = opinion.extended;
       tally.worst_margin = opinion.margin;
-      if (truth) (truth->visible_area == 0 ? tally.none : truth->is_all_seen ? tally.all : tally.some) = 1;
+      if (truth) seen_by(*truth, tally) = 1;
+      if (options_.oracle && !truth) tally.unjudged = 1;
       if (!answers) {
         tally.wrong = 1;
         wrong.push_back({number, c, names_.size(), true});
       } else if (truth) {
-        const Verdict verdict = judge(opinion, *truth);
+        Verdict verdict;
+        if (const auto exception = exception_of([&] { verdict = truth->judge(opinion); })) {
+          tally.unjudged = 1;
+          const std::lock_guard lock(mutex_);
+          unjudged_.push_back({number, contender.name + ": " + *exception});
+        }
         tally.wrong = verdict.is_wrong ? 1 : 0;
         tally.worst_error = verdict.error;
         tally.worst_relative_error = verdict.relative_error;
@@ -197,25 +231,38 @@ class StressRun {
     return failures;
   }
 
+  std::vector<UnjudgedQuestion> unjudged() {
+    std::ranges::sort(unjudged_, [](const Unjudged& a, const Unjudged& b) {
+      return std::tie(a.number, a.exception) < std::tie(b.number, b.exception);
+    });
+    if (unjudged_.size() > options_.failures_kept) unjudged_.resize(options_.failures_kept);
+    std::vector<UnjudgedQuestion> questions;
+    for (const Unjudged& u : unjudged_) {
+      const Named what = named(u.number);
+      questions.push_back({what.name + " " + drawn(what).placement, u.exception});
+    }
+    return questions;
+  }
+
   StressFailure smallest(const Found& found) const {
     const Named what = named(found.number);
     const DrawnQuestion drawn_question = drawn(what);
-    const PointContender& contender = options_.contenders[found.contender];
+    const Contender& contender = options_.contenders[found.contender];
     const bool is_answer = found.what == names_.size();
-    const auto ask = [&](const PointQuestion& question) { return contender.ask(question, seed_of(what.name)); };
-    const auto throws = [&](const PointQuestion& question) {
+    const auto ask = [&](const Question& question) { return contender.ask(question, seed_of(what.name)); };
+    const auto throws = [&](const Question& question) {
       return exception_of([&] {
         const Opinion opinion = ask(question);
         if (!is_answer) try_one(found.what, what.name, contender, question, opinion);
       });
     };
-    const auto is_wrong = [&](const PointQuestion& question) {
+    const auto is_wrong = [&](const Question& question) {
       const Opinion opinion = ask(question);
-      if (is_answer) return judge(opinion, oracle_form_factor(question)).is_wrong;
+      if (is_answer) return options_.kind->truth(question).judge(opinion).is_wrong;
       const auto trial = try_one(found.what, what.name, contender, question, opinion);
       return trial && !trial->holds();
     };
-    const auto fails = [&](const PointQuestion& question) {
+    const auto fails = [&](const Question& question) {
       if (stopped()) return false;  // then it stays as it is
       if (found.threw) return throws(question).has_value();
       bool wrong = false;
@@ -228,40 +275,36 @@ class StressRun {
                           .asked = {shrink(drawn_question.question, fails)},
                           .F = std::numeric_limits<double>::quiet_NaN(),
                           .truth = {}};
-    const PointQuestion question = failure.asked[0];
+    const Question question = failure.asked[0];
     if (found.threw) failure.exception = throws(question).value_or("");
     exception_of([&] { failure.F = ask(question).F; });
-    if (options_.oracle && !stopped()) failure.truth = static_cast<double>(oracle_form_factor(question).F);
+    if (options_.oracle && !stopped()) exception_of([&] { failure.truth = options_.kind->truth(question).F; });
     if (!is_answer && names_[found.what] != kClosure) {
       Random random(what.name + "/" + names_[found.what]);
-      const auto forms = properties()[found.what].forms(question, random);
+      const auto forms = properties_[found.what].forms(question, random);
       failure.asked.insert(failure.asked.end(), forms.begin(), forms.end());
     }
     return failure;
   }
 
   const StressOptions& options_;
+  std::span<const Property> properties_;
   std::vector<std::string> names_;  // of properties
   std::vector<const QuestionFamily*> families_;
   std::mutex mutex_;
   std::vector<StressTally> tallies_;
   std::vector<Found> found_;
+  std::vector<Unjudged> unjudged_;
 };
 
 }  // namespace
-
-std::vector<std::string> property_names() {
-  std::vector<std::string> names;
-  for (const Property& property : properties()) names.push_back(property.name);
-  names.emplace_back(kClosure);
-  return names;
-}
 
 void StressTally::add(const StressTally& other) {
   questions += other.questions;
   none += other.none;
   some += other.some;
   all += other.all;
+  unjudged += other.unjudged;
   wrong += other.wrong;
   worst_error = std::max(worst_error, other.worst_error);
   worst_relative_error = std::max(worst_relative_error, other.worst_relative_error);

@@ -8,19 +8,18 @@
 #include <vector>
 
 #include "src/output/progress.h"
-#include "src/stress/point_contender.h"
-#include "src/stress/property.h"
-#include "src/stress/question_family.h"
+#include "src/stress/question_kind.h"
 
 namespace exitance {
 
 struct StressOptions {
-  std::vector<std::string> families;  ///< empty: all
-  std::uint64_t count = 1000;         ///< of questions, spread evenly over families and departures
-  std::uint64_t first = 0;            ///< number of the first question
+  const QuestionKind* kind = &question_kind_named("points");  ///< not null
+  std::vector<std::string> families;                          ///< empty: all
+  std::uint64_t count = 1000;  ///< of questions, spread evenly over families and departures
+  std::uint64_t first = 0;     ///< number of the first question
   std::uint64_t seed = 1;
-  std::vector<PointContender> contenders;
-  bool oracle = true;      ///< compare with what CGAL's Boolean operations say
+  std::vector<Contender> contenders;
+  bool oracle = true;      ///< compare with the truth of the kind
   bool properties = true;  ///< of contenders that have them, and closure of the exact one
   std::size_t failures_kept = 1000;
   Progress progress;
@@ -37,6 +36,7 @@ struct PropertyTally {
 struct StressTally {
   std::uint64_t questions = 0;
   std::uint64_t none = 0, some = 0, all = 0;  ///< how much is seen, as the oracle says
+  std::uint64_t unjudged = 0;                 ///< questions that the oracle throws an exception on
   /// Answers that are further from the truth than their margin, or say of what is hidden that it is seen, or that
   /// something is open, hidden or away that is not; and exceptions instead of answers.
   std::uint64_t wrong = 0;
@@ -46,15 +46,12 @@ struct StressTally {
   StageCounts stages;
   std::uint64_t extended = 0;             ///< facets that took more than double precision
   double seconds = 0;                     ///< that the answers took, properties apart
-  std::vector<PropertyTally> properties;  ///< in the order of property_names()
+  std::vector<PropertyTally> properties;  ///< in the order of property_names(kind)
 
   void add(const StressTally& other);
   std::uint64_t tried() const;
   std::uint64_t broken() const;
 };
-
-/// Of properties(), and "closure".
-std::vector<std::string> property_names();
 
 struct StressRow {
   std::string family, departure, contender;
@@ -65,16 +62,24 @@ struct StressRow {
 struct StressFailure {
   std::string question;  ///< seed/family/departure/number, and its placement
   std::string contender;
-  std::string what;                  ///< "answer", or the property
-  std::string exception;             ///< what it says, where one was thrown instead of an answer
-  std::vector<PointQuestion> asked;  ///< the question, and the forms of it that the property compares it with
-  double F = 0;                      ///< what the contender says of the first; NaN if it throws
-  std::optional<double> truth;       ///< what the oracle says of it
+  std::string what;             ///< "answer", or the property
+  std::string exception;        ///< what it says, where one was thrown instead of an answer
+  std::vector<Question> asked;  ///< the question, and the forms of it that the property compares it with
+  double F = 0;                 ///< what the contender says of the first; NaN if it throws
+  std::optional<double> truth;  ///< what the oracle says of it
+};
+
+/// A question that the oracle has no answer to.
+struct UnjudgedQuestion {
+  std::string question;  ///< as in StressFailure
+  std::string exception;
 };
 
 struct StressReport {
-  std::vector<StressRow> rows;          ///< by contender, family, departure
-  std::vector<StressFailure> failures;  ///< in the order of the questions
+  const QuestionKind* kind = nullptr;
+  std::vector<StressRow> rows;             ///< by contender, family, departure
+  std::vector<StressFailure> failures;     ///< in the order of the questions
+  std::vector<UnjudgedQuestion> unjudged;  ///< likewise
   std::uint64_t questions = 0;
   double seconds = 0;
   bool complete = true;  ///< not stopped
@@ -84,8 +89,8 @@ struct StressReport {
 
 /// The same options give the same report, times apart, for any number of threads. Of contenders that prove nothing only
 /// the first failure of each family is kept, for they have many. An exception of a contender is a failure of its own;
-/// of the oracle it ends the run. Throws std::invalid_argument on a family that there is not, naming those that there
-/// are.
+/// where the oracle throws, answers are not judged. Throws std::invalid_argument on a family that there is not, naming
+/// those that there are.
 StressReport run_stress(const StressOptions& options);
 
 }  // namespace exitance

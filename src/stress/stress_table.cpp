@@ -10,16 +10,18 @@ namespace exitance {
 
 std::string stress_csv(const StressReport& report) {
   std::string text =
-      "family,magnitude,contender,questions,none,some,all,wrong,worst_error,worst_relative_error,worst_margin,filter,"
+      "family,magnitude,contender,questions,none,some,all,unjudged,wrong,worst_error,worst_relative_error,worst_margin,"
+      "filter,"
       "interval,exact,extended,seconds";
-  for (const std::string& name : property_names()) text += fmt::format(",{0}_tried,{0}_broken,{0}_defect", name);
+  for (const std::string& name : property_names(*report.kind))
+    text += fmt::format(",{0}_tried,{0}_broken,{0}_defect", name);
   text += "\n";
   for (const StressRow& row : report.rows) {
     const StressTally& t = row.tally;
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{},{},{},{},{:.6g}", row.family, row.departure,
-                    row.contender, t.questions, t.none, t.some, t.all, t.wrong, t.worst_error, t.worst_relative_error,
-                    t.worst_margin, t.stages.filter, t.stages.interval, t.stages.exact, t.extended, t.seconds);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{},{},{},{},{:.6g}", row.family, row.departure,
+                        row.contender, t.questions, t.none, t.some, t.all, t.unjudged, t.wrong, t.worst_error,
+                        t.worst_relative_error, t.worst_margin, t.stages.filter, t.stages.interval, t.stages.exact,
+                        t.extended, t.seconds);
     for (const PropertyTally& p : t.properties) text += fmt::format(",{},{},{:.6g}", p.tried, p.broken, p.worst_defect);
     text += "\n";
   }

@@ -25,4 +25,12 @@ Verdict judge(const Opinion& opinion, const OracleAnswer& truth) {
   return verdict;
 }
 
+Verdict judge(const Opinion& opinion, const std::vector<Classes>& allowed) {
+  Verdict verdict{opinion.classes.size() != allowed.size()};
+  for (std::size_t k = 0; k < allowed.size() && !verdict.is_wrong; ++k) {
+    verdict.is_wrong = (bits(opinion.classes[k]) & allowed[k]) == 0;
+  }
+  return verdict;
+}
+
 }  // namespace exitance

@@ -1,7 +1,12 @@
 #pragma once
 // Whether an opinion is right.
 
-#include "src/stress/point_contender.h"
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "src/stress/contender.h"
 #include "src/stress/visibility_oracle.h"
 
 namespace exitance {
@@ -12,8 +17,26 @@ struct Verdict {
   double relative_error = 0;  ///< where the true F is at least 1e-15, else 0
 };
 
-/// Wrong: further from the truth than the margin and the rounding of F; or, where the contender commits itself, blocked
-/// though some area is seen, open though some is hidden, away though some is above the horizon and faces the point.
+/// What an oracle says of one question.
+struct Truth {
+  enum class Seen : std::uint8_t { none, some, all } seen = Seen::some;  ///< how much of the source
+  std::optional<double> F;
+  std::function<Verdict(const Opinion&)> judge;
+};
+
+/// Of points. Wrong: further from the truth than the margin and the rounding of F; or, where the contender commits
+/// itself, blocked though some area is seen, open though some is hidden, away though some is above the horizon and
+/// faces the point.
 Verdict judge(const Opinion& opinion, const OracleAnswer& truth);
+
+/// A set of classes, by their bits.
+using Classes = std::uint8_t;
+template <class... Class>
+constexpr Classes bits(Class... classes) {
+  return static_cast<Classes>(((1u << static_cast<unsigned>(classes)) | ...));
+}
+
+/// Of Opinion::classes. Wrong: not as many as are allowed, or one is none of those allowed in its place.
+Verdict judge(const Opinion& opinion, const std::vector<Classes>& allowed);
 
 }  // namespace exitance

@@ -25,6 +25,18 @@ TEST(Stress, EndsItsJsonWithTheNumbersThatCount) {
   EXPECT_LE(report["worst_value_error"], 1e-13);
 }
 
+TEST(Stress, AsksOtherQuestionsOfTheSameScenes) {
+  for (const char* kind : {"shafts", "shadows"}) {
+    const Outcome outcome = run(std::string("stress --count 12 --family gap,cover --json --question ") + kind);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Json report = Json::parse(outcome.out);
+    EXPECT_EQ(report["kind"], kind);
+    EXPECT_EQ(report["questions"], 12);
+    EXPECT_EQ(report["wrong"], 0);
+    EXPECT_TRUE(report["not_judged"].empty());
+  }
+}
+
 TEST(Stress, WritesFailuresThatCasesReplays) {
   const ScratchFolder folder;
   const Outcome outcome =
@@ -50,6 +62,7 @@ TEST(Stress, WritesFailuresThatCasesReplays) {
 TEST(Stress, RefusesWhatItDoesNotKnow) {
   for (const char* arguments :
        {"stress --family gaps", "stress --contender exactly", "stress --contender rays:0", "stress --count 0",
+        "stress --question shaft", "stress --question shafts --contender rays:16",
         "stress --contender exact,rays:16,exact", "stress --contender exact,rays:16 --against properties"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;

@@ -7,7 +7,7 @@
 
 #include "src/scene/patch_mesh.h"
 #include "src/scene/scene.h"
-#include "tests/form_factor/exchange_truth.h"
+#include "src/stress/exchange_truth.h"
 
 namespace exitance {
 

@@ -1,7 +1,7 @@
 // Obstructed form factors against truth by another algorithm (exchange_truth.h). Values that take long stand in truth/,
 // one file a scene; WriteTruth makes them anew (--gtest_also_run_disabled_tests).
 
-#include "tests/form_factor/exchange_truth.h"
+#include "src/stress/exchange_truth.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

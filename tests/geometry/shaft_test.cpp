@@ -1,6 +1,5 @@
 #include "geometry/shaft.h"
 
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,270 +7,14 @@
 #include <optional>
 
 #include "src/stress/placement.h"
+#include "src/stress/shaft_oracle.h"
 
 namespace exitance {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-using Rational = Kernel::FT;
-using Point = Kernel::Point_3;
-using Vector = Kernel::Vector_3;
-using Points = std::vector<Point>;
+using Rational = ExactKernel::FT;
+using Point = ExactPoint;
 using Overlap = Shaft::Overlap;
-
-// --- The oracle: everything constructed with rational coordinates -------------------------------------------------
-
-Point exact(const Vec3& p) {
-  return {p.x, p.y, p.z};
-}
-
-/// The half-space normal · (v − origin) ≥ 0.
-struct ExactSide {
-  Point origin;
-  Vector normal;
-  Rational value(const Point& p) const { return normal * (p - origin); }
-  int sign(const Point& p) const { return static_cast<int>(CGAL::sign(value(p))); }
-};
-
-ExactSide plane_of(const Points& loop) {
-  for (std::size_t i = 2; i < loop.size(); ++i) {
-    for (std::size_t j = 1; j < i; ++j) {
-      const Vector n = CGAL::cross_product(loop[j] - loop[0], loop[i] - loop[0]);
-      if (n != CGAL::NULL_VECTOR) return {loop[0], n};
-    }
-  }
-  throw std::logic_error("a facet without area");
-}
-
-Points clip(const Points& loop, const ExactSide& side) {
-  Points kept;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Point &p = loop[i], &q = loop[(i + 1) % loop.size()];
-    const Rational at_p = side.value(p), at_q = side.value(q);
-    if (at_p >= 0) kept.push_back(p);
-    if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) kept.push_back(p + (at_p / (at_p - at_q)) * (q - p));
-  }
-  return kept;
-}
-
-Point mean(const Points& points) {
-  Vector sum = CGAL::NULL_VECTOR;
-  for (const Point& p : points) sum = sum + (p - CGAL::ORIGIN);
-  return CGAL::ORIGIN + sum / Rational(static_cast<int>(points.size()));
-}
-
-/// Whether the relative interior of a convex loop meets the open intersection of half-spaces.
-bool meets(const Points& loop, const std::vector<ExactSide>& sides) {
-  Points left = loop;
-  for (const ExactSide& s : sides) {
-    left = clip(left, s);
-    if (left.empty()) return false;
-  }
-  const Point middle = mean(left);
-  return std::ranges::all_of(sides, [&](const ExactSide& s) { return s.sign(middle) > 0; });
-}
-
-struct ExactEnd {
-  std::uint32_t facet = 0;
-  Points points;
-  ExactSide plane;
-};
-
-/// All planes through three points of both that have the others on one side, and the planes of both.
-std::vector<ExactSide> sides_of_hull(const ExactEnd& a, const ExactEnd& b) {
-  Points all = a.points;
-  all.insert(all.end(), b.points.begin(), b.points.end());
-  std::vector<ExactSide> sides{a.plane, b.plane};
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      for (std::size_t k = 0; k < j; ++k) {
-        ExactSide side{all[i], CGAL::cross_product(all[j] - all[i], all[k] - all[i])};
-        if (side.normal == CGAL::NULL_VECTOR) continue;
-        bool in = false, out = false;
-        for (const Point& p : all) {
-          const int s = side.sign(p);
-          in = in || s > 0;
-          out = out || s < 0;
-          if (in && out) break;
-        }
-        if (in && out) continue;
-        if (out) side.normal = -side.normal;
-        sides.push_back(side);
-      }
-    }
-  }
-  return sides;
-}
-
-struct ExactItem {
-  std::vector<Points> loops;  ///< one, or a convex shell's
-  std::vector<ExactSide> planes;
-  bool solid = false;
-};
-
-/// Whether the segment meets the closed facet; a segment in its plane tells nothing and counts as meeting it.
-bool meets_facet(const Points& loop, const ExactSide& plane, const Point& from, const Point& to) {
-  const Rational at_from = plane.value(from), at_to = plane.value(to);
-  if (at_from == 0 && at_to == 0) return true;
-  if (CGAL::sign(at_from) * CGAL::sign(at_to) > 0) return false;
-  const Point p = from + (at_from / (at_from - at_to)) * (to - from);
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Point &u = loop[k], &v = loop[(k + 1) % loop.size()];
-    if (CGAL::cross_product(v - u, p - u) * plane.normal < 0) return false;
-  }
-  return true;
-}
-
-bool meets_solid(const ExactItem& solid, const Point& from, const Point& to) {
-  Rational first = 0, last = 1;
-  for (const ExactSide& s : solid.planes) {
-    const Rational at_from = s.value(from), at_to = s.value(to);  // inside where negative
-    if (at_from > 0 && at_to > 0) return false;
-    if (at_from <= 0 && at_to <= 0) continue;
-    const Rational t = at_from / (at_from - at_to);
-    if (at_from > 0) first = std::max(first, t);
-    if (at_to > 0) last = std::min(last, t);
-  }
-  return first <= last;
-}
-
-/// Whether a point of the loop lies inside the solid.
-bool reaches_into(const Points& loop, const ExactItem& solid) {
-  std::vector<ExactSide> inner;
-  for (const ExactSide& s : solid.planes) inner.push_back({s.origin, -s.normal});
-  return meets(loop, inner);
-}
-
-bool blocks_all(const ExactEnd& a, const ExactEnd& b, const ExactItem& item) {
-  for (const Point& p : a.points) {
-    for (const Point& q : b.points) {
-      if (!(item.solid ? meets_solid(item, p, q) : meets_facet(item.loops[0], item.planes[0], p, q))) return false;
-    }
-  }
-  return !item.solid || !reaches_into(a.points, item) || !reaches_into(b.points, item);
-}
-
-/// Whether facets in one plane overlap on a positive area above some plane, and whether the first holds all of the
-/// second.
-struct Contact {
-  bool overlap = true, holds = true;
-};
-Contact contact_of(const Points& facet, const ExactSide& plane, const Points& end, const ExactSide& above) {
-  Contact contact;
-  Points left = clip(end, above);
-  for (std::size_t k = 0; k < facet.size(); ++k) {
-    const Point &u = facet[k], &v = facet[(k + 1) % facet.size()];
-    const ExactSide inner{u, CGAL::cross_product(plane.normal, v - u)};
-    contact.holds = contact.holds && std::ranges::all_of(end, [&](const Point& p) { return inner.sign(p) >= 0; });
-    left = clip(left, inner);
-  }
-  contact.overlap = false;
-  for (std::size_t i = 2; i < left.size(); ++i) {
-    contact.overlap =
-        contact.overlap || CGAL::cross_product(left[i - 1] - left[0], left[i] - left[0]) != CGAL::NULL_VECTOR;
-  }
-  contact.holds = contact.holds && contact.overlap;
-  return contact;
-}
-
-class Oracle {
- public:
-  explicit Oracle(const PolygonSoup& soup) : soup_(soup) {
-    for (const Facet& f : soup.facets()) {
-      Points loop;
-      for (const Corner& c : soup.corners(f)) loop.push_back(exact(c.at));
-      planes_.push_back(plane_of(loop));
-      loops_.push_back(std::move(loop));
-    }
-  }
-
-  ExactEnd end(const ShaftEnd& given) const {
-    ExactEnd end{given.facet, loops_[given.facet], planes_[given.facet]};
-    if (!given.loop.empty()) end.points.clear();
-    for (const Vec3& p : given.loop) end.points.push_back(exact(p));
-    return end;
-  }
-  const Points& loop(std::uint32_t facet) const { return loops_[facet]; }
-  const ExactSide& plane(std::uint32_t facet) const { return planes_[facet]; }
-  ExactItem item(std::uint32_t index) const {
-    if (index < loops_.size()) return {{loops_[index]}, {planes_[index]}, false};
-    ExactItem item;
-    item.solid = true;
-    for (const std::uint32_t f : soup_.shells()[index - loops_.size()].facets) {
-      item.loops.push_back(loops_[f]);
-      item.planes.push_back(planes_[f]);
-    }
-    return item;
-  }
-  std::vector<std::uint32_t> items() const {
-    std::vector<std::uint32_t> all;
-    soup_.index().find(soup_.index().bounds(), all);
-    std::ranges::sort(all);
-    return all;
-  }
-
-  bool face_each_other(const ExactEnd& a, const ExactEnd& b) const {
-    const auto above = [](const ExactEnd& end, const ExactEnd& other) {
-      return std::ranges::any_of(end.points, [&](const Point& p) { return other.plane.sign(p) > 0; });
-    };
-    return above(a, b) && above(b, a);
-  }
-
-  /// `sides` of the ends' hull.
-  Overlap overlap(const ExactEnd& a, const ExactEnd& b, const std::vector<ExactSide>& sides,
-                  std::uint32_t index) const {
-    const ExactItem candidate = item(index);
-    Overlap most = Overlap::outside;
-    bool in_plane_of_end = false;
-    for (const ExactEnd* end : {&a, &b}) {
-      for (const std::uint32_t t : soup_.coplanar(end->facet)) {
-        const bool concerned = index < loops_.size() ? t == index : soup_.facets()[t].shell == index - loops_.size();
-        in_plane_of_end = in_plane_of_end || concerned;
-        if (!concerned || !soup_.covers(t, end->facet)) continue;
-        const Contact contact = contact_of(loops_[t], planes_[t], end->points, end == &a ? b.plane : a.plane);
-        if (contact.overlap) most = std::max(most, contact.holds ? Overlap::blocking : Overlap::partial);
-      }
-    }
-    if (in_plane_of_end && !candidate.solid) return most;  // even where it is so up to rounding only
-    if (std::ranges::none_of(candidate.loops, [&](const Points& l) { return meets(l, sides); })) return most;
-    return std::max(most, blocks_all(a, b, candidate) ? Overlap::blocking : Overlap::partial);
-  }
-
- private:
-  const PolygonSoup& soup_;
-  std::vector<Points> loops_;
-  std::vector<ExactSide> planes_;
-};
-
-/// Looks along lines between interior points of the ends, of what each sees of the other, and says how many there were
-/// and how many cross the item strictly between.
-struct Lines {
-  int seen = 0, blocked = 0;
-};
-Lines look_along_lines(const ExactEnd& a, const ExactEnd& b, const ExactItem& item, int count, Random& random) {
-  const auto inner_point = [&](const Points& points) {
-    Vector sum = CGAL::NULL_VECTOR;
-    int weights = 0;
-    for (const Point& p : points) {
-      const int w = random.whole(0, 3) == 0 ? 1 : random.whole(1, 400);
-      sum = sum + Rational(w) * (p - CGAL::ORIGIN);
-      weights += w;
-    }
-    return CGAL::ORIGIN + sum / Rational(weights);
-  };
-  Lines lines;
-  for (int k = 0; k < count; ++k) {
-    const Point p = inner_point(a.points), q = inner_point(b.points);
-    if (a.plane.sign(q) <= 0 || b.plane.sign(p) <= 0) continue;
-    ++lines.seen;
-    bool blocked = false;
-    for (std::size_t f = 0; f < item.loops.size() && !blocked; ++f) {
-      blocked = item.planes[f].sign(p) * item.planes[f].sign(q) < 0 && meets_facet(item.loops[f], item.planes[f], p, q);
-    }
-    lines.blocked += blocked;
-  }
-  return lines;
-}
 
 // --- Scenes -------------------------------------------------------------------------------------------------------
 
@@ -387,20 +130,8 @@ struct Tally {
   int pairs = 0;
 };
 
-/// Whether a shell is separated from one of the ends by a plane that Shaft looks at.
-bool plainly_separated(const ExactEnd& a, const ExactEnd& b, const ExactItem& item) {
-  for (const ExactEnd* end : {&a, &b}) {
-    const auto in_front = [](const Points& points, const ExactSide& s) {
-      return std::ranges::all_of(points, [&](const Point& p) { return s.sign(p) >= 0; });
-    };
-    if (std::ranges::all_of(item.loops, [&](const Points& l) { return in_front(l, end->plane); })) return true;
-    if (std::ranges::any_of(item.planes, [&](const ExactSide& s) { return in_front(end->points, s); })) return true;
-  }
-  return false;
-}
-
 /// Compares with the oracle everything that Shaft says of a pair of ends.
-void check_pair(const PolygonSoup& soup, const Oracle& oracle, Shaft& shaft, const ShaftEnd& given_a,
+void check_pair(const PolygonSoup& soup, const ShaftOracle& oracle, Shaft& shaft, const ShaftEnd& given_a,
                 const ShaftEnd& given_b, Random& random, Tally& tally) {
   const ExactEnd a = oracle.end(given_a), b = oracle.end(given_b);
   shaft.reset(given_a, given_b);
@@ -490,7 +221,7 @@ TEST_P(ShaftPlacement, AgreesWithTheOracle) {
   for (int scene = 0; scene < 40; ++scene) {
     const Things things = placed(placement, random_things(random));
     const PolygonSoup soup(things.polygons, things.roles);
-    const Oracle oracle(soup);
+    const ShaftOracle oracle(soup);
     Shaft shaft(soup);
     const auto n = static_cast<std::uint32_t>(soup.facets().size());
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -525,7 +256,7 @@ TEST_P(ShaftExactPlacement, PiecesAgreeWithTheOracle) {
   for (int scene = 0; scene < 40; ++scene) {
     const Things things = placed(placement, random_things(random));
     const PolygonSoup soup(things.polygons, things.roles);
-    const Oracle oracle(soup);
+    const ShaftOracle oracle(soup);
     Shaft shaft(soup);
     const auto n = static_cast<std::uint32_t>(soup.facets().size());
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -543,7 +274,7 @@ TEST_P(ShaftExactPlacement, PiecesAgreeWithTheOracle) {
 
 /// Whether a facet lies in the plane of another, or of a shell's facet, up to rounding: there a rounded piece may lie
 /// on either side.
-bool in_one_plane_but_for_rounding(const Oracle& oracle, std::uint32_t facet, std::uint32_t index) {
+bool in_one_plane_but_for_rounding(const ShaftOracle& oracle, std::uint32_t facet, std::uint32_t index) {
   const ExactItem item = oracle.item(index);
   return std::ranges::any_of(item.planes, [&](const ExactSide& plane) {
     return std::ranges::all_of(oracle.loop(facet), [&](const Point& p) {
@@ -561,17 +292,17 @@ TEST_P(ShaftPlacement, OfRoundedPiecesHoldsAlongLines) {
   for (int scene = 0; scene < 25; ++scene) {
     const Things things = placed(placement, random_things(random));
     const PolygonSoup soup(things.polygons, things.roles);
-    const Oracle oracle(soup);
+    const ShaftOracle oracle(soup);
     Shaft shaft(soup);
     const auto n = static_cast<std::uint32_t>(soup.facets().size());
     /// Both the rounded thirds and points well inside the exact ones.
     const auto third = [&](std::uint32_t facet, std::vector<Vec3>& rounded) {
       const auto corners = soup.corners(soup.facets()[facet]);
       const Point to =
-          exact(corners[static_cast<std::size_t>(random.whole(0, static_cast<int>(corners.size()) - 1))].at);
+          exact_point(corners[static_cast<std::size_t>(random.whole(0, static_cast<int>(corners.size()) - 1))].at);
       ExactEnd end{facet, {}, oracle.plane(facet)};
-      for (const Corner& c : corners) end.points.push_back(to + (exact(c.at) - to) / 3);
-      const Point middle = mean(end.points);
+      for (const Corner& c : corners) end.points.push_back(to + (exact_point(c.at) - to) / 3);
+      const Point middle = exact_mean(end.points);
       for (Point& p : end.points) {
         rounded.push_back({CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())});
         p = p + Rational(0x1p-20) * (middle - p);

@@ -7,25 +7,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/stress/point_contender.h"
 #include "src/stress/stage.h"
 
 namespace exitance {
 namespace {
 
 /// A ceiling behind a sheet, a bent sheet, and a box.
-PointQuestion room() {
+Question room() {
   Random random("room");
-  PointQuestion question = Stage(random, 0).question;
+  Question question{Stage(random, 0).question, {}};
   question.occluders = {sheet(rectangle(8, -2, -1, 1, 2)), sheet({{1, 1, 6}, {3, 1, 6}, {3, 4, 7}, {1, 3, 6}}),
                         box({-4, -4, 4}, {-2, -3, 7})};
   return question;
 }
 
-Opinion right(const PointQuestion& question) {
+Opinion right(const Question& question) {
   return point_contender_named("exact").ask(question, 0);
 }
 
-std::size_t vertices(const PointQuestion& question) {
+std::size_t vertices(const Question& question) {
   std::size_t count = 0;
   for (const Obstacle& o : question.occluders) {
     for (const Polygon& face : o.faces) count += face.outer.size();
@@ -34,7 +35,7 @@ std::size_t vertices(const PointQuestion& question) {
 }
 
 /// What a wrong contender depends on though it must not.
-double wrong_by(const std::string& property, const PointQuestion& q) {
+double wrong_by(const std::string& property, const Question& q) {
   const auto& occluders = q.occluders;
   const auto& first = occluders[0].faces[0].outer;
   if (property == "permuted") return first[0].x + first[0].z;
@@ -52,8 +53,8 @@ double wrong_by(const std::string& property, const PointQuestion& q) {
 class EveryProperty : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(EveryProperty, HoldsForTheExactContenderAndFindsAWrongOne) {
-  const Property& property = properties()[GetParam()];
-  const PointQuestion question = room();
+  const Property& property = point_properties()[GetParam()];
+  const Question question = room();
   int applied = 0, broken = 0;
   for (int k = 0; k < 12; ++k) {
     const std::string name = property.name + std::to_string(k);
@@ -62,7 +63,7 @@ TEST_P(EveryProperty, HoldsForTheExactContenderAndFindsAWrongOne) {
     if (!trial) continue;
     ++applied;
     EXPECT_TRUE(trial->holds()) << property.name << ": " << trial->defect << " > " << trial->allowed;
-    const auto wrong = [&](const PointQuestion& q) {
+    const auto wrong = [&](const Question& q) {
       Opinion opinion = right(q);
       opinion.F += 1e-9 * wrong_by(property.name, q);
       return opinion;
@@ -73,8 +74,8 @@ TEST_P(EveryProperty, HoldsForTheExactContenderAndFindsAWrongOne) {
   EXPECT_GT(broken, 0) << property.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Properties, EveryProperty, testing::Range(std::size_t{0}, properties().size()),
-                         [](const auto& one) { return properties()[one.param].name; });
+INSTANTIATE_TEST_SUITE_P(Properties, EveryProperty, testing::Range(std::size_t{0}, point_properties().size()),
+                         [](const auto& one) { return point_properties()[one.param].name; });
 
 TEST(Closure, HoldsInARoomOfPatches) {
   const PropertyTrial trial = try_closure(room());
@@ -90,7 +91,7 @@ TEST(PointContenders, AreKnownByName) {
 }
 
 TEST(PointContenders, AgreeOnARoom) {
-  const PointQuestion question = room();
+  const Question question = room();
   const double F = right(question).F;
   for (const char* name : {"plain-double", "cgal-epeck", "rays:1024", "rays:1024:fast"}) {
     const Opinion opinion = point_contender_named(name).ask(question, 1);

@@ -11,12 +11,12 @@ namespace {
 
 TEST(Shrinking, LeavesOnlyWhatFails) {
   Random random("shrinking");
-  PointQuestion question = Stage(random, 0).question;
+  Question question{Stage(random, 0).question, {}};
   question.point = {0.1, 0.2, 0.3};
   question.occluders = {sheet(rectangle(4, 0, 0, 1, 1)), box({1, 1, 5}, {2, 2, 6}),
                         sheet({{0, 0, 8}, {1.2345, 0, 8}, {2, 1, 8}, {1, 2, 8}, {0, 1, 8}})};
   std::size_t asked = 0;
-  const auto fails = [&](const PointQuestion& q) {
+  const auto fails = [&](const Question& q) {
     ++asked;
     for (const Obstacle& o : q.occluders) {
       for (const Polygon& face : o.faces) {
@@ -27,7 +27,7 @@ TEST(Shrinking, LeavesOnlyWhatFails) {
     }
     return false;
   };
-  const PointQuestion small = shrink(question, fails);
+  const Question small = shrink(question, fails);
   ASSERT_EQ(small.occluders.size(), 1u);
   EXPECT_EQ(small.occluders[0].faces[0].outer.size(), 3u);
   const auto& corners = small.occluders[0].faces[0].outer;
@@ -39,21 +39,21 @@ TEST(Shrinking, LeavesOnlyWhatFails) {
 
 TEST(Shrinking, LeavesSolidsWhole) {
   Random random("solids");
-  PointQuestion question = Stage(random, 0).question;
+  Question question{Stage(random, 0).question, {}};
   question.occluders = {box({1, 1, 5}, {2, 2, 6}), box({3, 3, 5}, {4, 4, 6})};
-  const PointQuestion small = shrink(question, [](const PointQuestion& q) { return !q.occluders.empty(); });
+  const Question small = shrink(question, [](const Question& q) { return !q.occluders.empty(); });
   ASSERT_EQ(small.occluders.size(), 1u);
   EXPECT_EQ(small.occluders[0].faces.size(), 6u);
 }
 
 TEST(Shrinking, EndsAfterSoManyTries) {
   Random random("tries");
-  PointQuestion question = Stage(random, 0).question;
+  Question question{Stage(random, 0).question, {}};
   question.occluders = {sheet(rectangle(4, 0, 0, 1, 1)), sheet(rectangle(5, 0, 0, 1, 1)),
                         sheet(rectangle(6, 0, 0, 1, 1))};
   std::size_t asked = 0;
   shrink(
-      question, [&](const PointQuestion&) { return ++asked > 0; }, 2);
+      question, [&](const Question&) { return ++asked > 0; }, 2);
   EXPECT_EQ(asked, 2u);
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 
+#include "src/stress/point_contender.h"
 #include "src/stress/verdict.h"
 
 namespace exitance {
@@ -37,10 +38,10 @@ TEST(StressRun, FindsNothingWrongOfTheExactContender) {
 }
 
 /// Answers, and takes all that is seen for hidden where that is next to nothing; its bound claims the contrary.
-PointContender careless() {
+Contender careless() {
   const auto exact = point_contender_named("exact");
   return {"careless",
-          [exact](const PointQuestion& q, std::uint64_t seed) {
+          [exact](const Question& q, std::uint64_t seed) {
             Opinion opinion = exact.ask(q, seed);
             if (opinion.F < 1e-7) opinion = {0, opinion.margin, Visibility::blocked, {}, 0};
             return opinion;
@@ -59,7 +60,7 @@ TEST(StressRun, FindsACarelessContender) {
   for (const StressFailure& failure : report.failures) {
     EXPECT_EQ(failure.what, "answer");
     EXPECT_EQ(failure.F, 0);
-    const PointQuestion& question = failure.asked.at(0);
+    const Question& question = failure.asked.at(0);
     EXPECT_TRUE(judge(careless().ask(question, 0), oracle_form_factor(question)).is_wrong) << "replays";
     EXPECT_LE(question.occluders.size(), 4u);
   }
@@ -72,7 +73,7 @@ TEST(StressRun, SmallFailuresOfPlainDoublesReplay) {
   ASSERT_FALSE(report.failures.empty());
   for (const StressFailure& failure : report.failures) {
     if (failure.what != "answer") continue;
-    const PointQuestion& question = failure.asked.at(0);
+    const Question& question = failure.asked.at(0);
     const Opinion plain = point_contender_named("plain-double").ask(question, 0);
     EXPECT_TRUE(judge(plain, oracle_form_factor(question)).is_wrong) << failure.question;
   }
@@ -115,11 +116,11 @@ TEST(StressRun, GoesOnWhereAnotherEnded) {
 }
 
 /// Throws where more than one thing stands between, or, if `late`, only when it is asked again.
-PointContender throwing(bool late) {
+Contender throwing(bool late) {
   const auto exact = point_contender_named("exact");
   const auto asked = std::make_shared<std::atomic<int>>(0);
   return {"throwing",
-          [exact, asked, late](const PointQuestion& q, std::uint64_t seed) {
+          [exact, asked, late](const Question& q, std::uint64_t seed) {
             if (late ? (*asked)++ > 0 : q.occluders.size() > 1) throw std::runtime_error("too much stands between");
             return exact.ask(q, seed);
           },

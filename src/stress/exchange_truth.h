@@ -6,6 +6,7 @@
 //   A_i F_ij = 1/pi * integral over directions of the area of (receiver ∩ source \ shadows) dω.
 // The integrand has no kernel that grows where polygons touch or come near each other.
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -40,5 +41,11 @@ struct TruthOptions {
 ///  - an occluder that joins, pierces or duplicates another or a polygon is no special case.
 ExchangeTruth exchange_truth(std::span<const Vec3> receiver, std::span<const Vec3> source,
                              std::span<const ConvexBody> occluders, const TruthOptions& options = {});
+
+/// The same by 12,776 directions, lattices of 1,597 that are shifted eight times at random (`seed`): in a tenth of a
+/// second at most, right to some 1e-5 of the smaller polygon's area. The error is six standard errors of the shifts'
+/// mean, and six directions' share of the largest value: an estimate that fails once in some thousand times.
+ExchangeTruth sampled_exchange(std::span<const Vec3> receiver, std::span<const Vec3> source,
+                               std::span<const ConvexBody> occluders, std::uint64_t seed);
 
 }  // namespace exitance

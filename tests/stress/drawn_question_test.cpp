@@ -1,4 +1,4 @@
-#include "src/stress/question_family.h"
+#include "src/stress/drawn_question.h"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ void for_each_question(int of_each, const Visit& visit) {
 TEST(QuestionFamilies, DrawTheSameFromTheSameNumbers) {
   for_each_question(2, [](const std::string& name, const auto& family, const auto& departure, const auto& drawn) {
     Random random(name);
-    const PointQuestion again = draw_question(family, departure, random).question;
+    const Question again = draw_question(family, departure, random).question;
     EXPECT_EQ(again.point, drawn.question.point) << name;
     EXPECT_EQ(again.source.outer, drawn.question.source.outer) << name;
     ASSERT_EQ(again.occluders.size(), drawn.question.occluders.size()) << name;

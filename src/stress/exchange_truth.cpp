@@ -1,4 +1,4 @@
-#include "tests/form_factor/exchange_truth.h"
+#include "src/stress/exchange_truth.h"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +8,8 @@
 #include <numbers>
 #include <queue>
 #include <stdexcept>
+
+#include "src/stress/placement.h"
 
 namespace exitance {
 namespace {
@@ -219,6 +221,7 @@ class Truth {
   Truth(std::span<const Vec3> receiver, std::span<const Vec3> source, std::span<const ConvexBody> occluders,
         const TruthOptions& options);
   ExchangeTruth integrate();
+  ExchangeTruth sample(std::uint64_t seed);
 
  private:
   /// A body's edge at a fixed longitude: points along it are (x, cos β (a + b x) − sin β (c + d x)).
@@ -623,7 +626,69 @@ ExchangeTruth Truth::integrate() {
   return truth;
 }
 
+/// Where all lines from receiver to source rise steeply enough, over the part of the plane at height 1 that they meet;
+/// else over the disc below the hemisphere.
+ExchangeTruth Truth::sample(std::uint64_t seed) {
+  ExchangeTruth truth;
+  if (empty_) return truth;
+  constexpr int kDirections = 1597, kStep = 987, kShifts = 8;  // Fibonacci numbers
+  constexpr Real kSteep = 0.3L;
+  const Point n = receiver_plane_.normal, s = unit(cross(n, std::fabs(n.x) < 0.6L ? Point{1, 0, 0} : Point{0, 1, 0})),
+              t = cross(n, s);
+  bool is_steep = true;
+  Spot low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+  for (const Point& p : bodies_[0].points) {
+    for (const Point& q : bodies_[1].points) {
+      const Point d = q - p;
+      const Real up = dot(d, n);
+      is_steep = is_steep && up > kSteep * std::sqrt(dot(d, d));
+      if (!is_steep) break;
+      low = {std::min(low.x, dot(d, s) / up), std::min(low.y, dot(d, t) / up)};
+      high = {std::max(high.x, dot(d, s) / up), std::max(high.y, dot(d, t) / up)};
+    }
+  }
+  const auto value_at = [&](Real a, Real b) {
+    Point d;
+    Real weight = 0;
+    if (is_steep) {
+      const Real x = low.x + a * (high.x - low.x), y = low.y + b * (high.y - low.y), square = 1 + x * x + y * y;
+      d = (1 / std::sqrt(square)) * (n + x * s + y * t);
+      weight = (high.x - low.x) * (high.y - low.y) / (kPi * square * std::sqrt(square));
+    } else {
+      const Real up = std::sqrt(1 - a), along = std::sqrt(a);
+      d = up * n + (along * std::cos(2 * kPi * b)) * s + (along * std::sin(2 * kPi * b)) * t;
+      weight = up > 0 ? 1 / up : 0;
+    }
+    set_longitude(std::atan2(dot(d, v_), dot(d, u_)));
+    return weight * lit_area(std::asin(std::clamp(dot(d, w_), Real(-1), Real(1))));
+  };
+  Random random(seed);
+  Real sum = 0, squares = 0, largest = 0;
+  for (int shift = 0; shift < kShifts; ++shift) {
+    const Real a = random.real(0, 1), b = random.real(0, 1);
+    Real mean = 0;
+    for (int k = 0; k < kDirections; ++k) {
+      const Real value = value_at(std::fmod(a + Real(k) / kDirections, Real(1)),
+                                  std::fmod(b + Real(k * kStep % kDirections) / kDirections, Real(1)));
+      mean += value / kDirections;
+      largest = std::max(largest, value);
+    }
+    sum += mean;
+    squares += mean * mean;
+  }
+  truth.integral = sum / kShifts;
+  const Real variance = std::max(Real(0), squares / kShifts - truth.integral * truth.integral) / (kShifts - 1);
+  truth.error = 6 * std::sqrt(variance) + 6 * largest / (kShifts * kDirections);
+  truth.evaluations = evaluations_;
+  return truth;
+}
+
 }  // namespace
+
+ExchangeTruth sampled_exchange(std::span<const Vec3> receiver, std::span<const Vec3> source,
+                               std::span<const ConvexBody> occluders, std::uint64_t seed) {
+  return Truth(receiver, source, occluders, {}).sample(seed);
+}
 
 ExchangeTruth exchange_truth(std::span<const Vec3> receiver, std::span<const Vec3> source,
                              std::span<const ConvexBody> occluders, const TruthOptions& options) {

@@ -1,0 +1,56 @@
+#include "src/stress/pair_question.h"
+
+#include <cmath>
+
+#include "src/form_factor/pair_form_factor.h"
+#include "src/stress/pair_oracle.h"
+
+namespace exitance {
+namespace {
+
+constexpr double kTolerance = 1e-4;
+
+Verdict judge(const Opinion& opinion, const PairOracleAnswer& truth) {
+  constexpr long double kLeast = 1e-15L;
+  const long double apart = std::fabs(opinion.F - truth.F), back = std::fabs(opinion.F_reverse - truth.F_reverse);
+  const bool is_within = apart <= opinion.margin + truth.error && back <= opinion.reverse_margin + truth.reverse_error;
+  const long double beyond = std::fmax(0.0L, apart - truth.error);
+  return {!is_within, static_cast<double>(beyond), truth.F >= kLeast ? static_cast<double>(beyond / truth.F) : 0};
+}
+
+}  // namespace
+
+Opinion ask_pair(const Question& question, bool both_ways) {
+  const AreaScene scene(question);
+  const ExchangeScene exchange(scene.soup);
+  PairOptions options;
+  options.tolerance = kTolerance;
+  options.both_ways = both_ways;
+  const PairFormFactor f = PairIntegrator(exchange).form_factor(0, 1, options);
+  Opinion opinion;
+  opinion.F = f.F;
+  opinion.margin = f.F_error;
+  opinion.F_reverse = f.F_reverse;
+  opinion.reverse_margin = f.F_reverse_error;
+  opinion.visibility = f.kind == PairClass::facing_away ? Visibility::away
+                       : f.kind == PairClass::open      ? Visibility::open
+                       : f.kind == PairClass::blocked   ? Visibility::blocked
+                                                        : Visibility::partial;
+  return opinion;
+}
+
+Truth pair_truth(const Question& question) {
+  const PairOracleAnswer truth = oracle_pair_form_factors(question, Care::sampled);
+  Question free = question;
+  free.occluders.clear();
+  const PairOracleAnswer open = oracle_pair_form_factors(free, Care::sampled);
+  const Truth::Seen seen = truth.F <= truth.error                         ? Truth::Seen::none
+                           : open.F - truth.F <= open.error + truth.error ? Truth::Seen::all
+                                                                          : Truth::Seen::some;
+  return {seen, static_cast<double>(truth.F), [question, truth](const Opinion& opinion) {
+            const Verdict verdict = judge(opinion, truth);
+            return verdict.is_wrong ? judge(opinion, oracle_pair_form_factors(question, Care::full)) : verdict;
+          }};
+}
+
+}  // namespace exitance

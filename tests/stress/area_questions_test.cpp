@@ -1,0 +1,207 @@
+// Questions of shafts, shadows and pairs: nothing is wrong of the library's answers, and what is wrong is found.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "geometry/shadow_volume.h"
+#include "src/stress/pair_oracle.h"
+#include "src/stress/shadow_question.h"
+#include "src/stress/shaft_question.h"
+#include "src/stress/stage.h"
+#include "src/stress/stress_run.h"
+
+namespace exitance {
+namespace {
+
+StressOptions asking(const std::string& kind, const std::string& contender, std::uint64_t count) {
+  StressOptions options;
+  options.kind = &question_kind_named(kind);
+  options.count = count;
+  options.contenders = {options.kind->contender_named(contender)};
+  return options;
+}
+
+void expect_nothing_wrong(const StressReport& report, const std::string& contender) {
+  const StressTally total = report.total(contender);
+  EXPECT_EQ(total.wrong, 0u);
+  EXPECT_EQ(total.broken(), 0u);
+  EXPECT_GT(total.all, 0u);
+  EXPECT_GT(total.some, 0u);
+  for (const StressFailure& failure : report.failures) ADD_FAILURE() << failure.what << " of " << failure.question;
+}
+
+TEST(AreaQuestions, NothingIsWrongOfShafts) {
+  const StressReport report = run_stress(asking("shafts", "exact", 87));
+  expect_nothing_wrong(report, "exact");
+  EXPECT_GT(report.total("exact").none, 0u);
+  EXPECT_EQ(report.total("exact").unjudged, 0u);
+  for (const PropertyTally& property : report.total("exact").properties) EXPECT_GT(property.tried, 0u);
+}
+
+TEST(AreaQuestions, NothingIsWrongOfShadows) {
+  const StressReport report = run_stress(asking("shadows", "exact", 29));
+  expect_nothing_wrong(report, "exact");
+  EXPECT_EQ(report.total("exact").unjudged, 0u);
+}
+
+TEST(AreaQuestions, NothingIsWrongOfPairs) {
+  StressOptions options = asking("pairs", "exact", 12);
+  options.families = {"shared_edge", "gap"};
+  options.properties = false;
+  expect_nothing_wrong(run_stress(options), "exact");
+}
+
+/// Says of each class that it is another.
+Contender confused(const std::string& kind, ShaftClass from, ShaftClass to) {
+  const Contender exact = question_kind_named(kind).contender_named("exact");
+  return {"confused",
+          [=](const Question& q, std::uint64_t seed) {
+            Opinion opinion = exact.ask(q, seed);
+            std::ranges::replace(opinion.classes, static_cast<std::uint8_t>(from), static_cast<std::uint8_t>(to));
+            return opinion;
+          },
+          true, false};
+}
+
+TEST(AreaQuestions, FalseClassesOfShaftsAreFound) {
+  for (const auto& [from, to] : {std::pair{ShaftClass::outside, ShaftClass::partial},
+                                 {ShaftClass::partial, ShaftClass::outside},
+                                 {ShaftClass::partial, ShaftClass::blocking},
+                                 {ShaftClass::away, ShaftClass::outside}}) {
+    StressOptions options = asking("shafts", "exact", 58);
+    options.contenders = {confused("shafts", from, to)};
+    options.failures_kept = 1;
+    const StressReport report = run_stress(options);
+    EXPECT_GT(report.total("confused").wrong, 5u) << static_cast<int>(from);
+    ASSERT_EQ(report.failures.size(), 1u);
+    const Question& question = report.failures[0].asked.at(0);
+    EXPECT_TRUE(shaft_truth(question).judge(options.contenders[0].ask(question, 0)).is_wrong) << "replays";
+  }
+}
+
+TEST(AreaQuestions, MissedShadowsAreFound) {
+  for (const Shade missed : {Shade::penumbra, Shade::umbra}) {
+    StressOptions options = asking("shadows", "exact", 12);
+    options.families = {"cover", "soup"};
+    options.contenders = {
+        confused("shadows", static_cast<ShaftClass>(missed), static_cast<ShaftClass>(Shade::outside))};
+    options.failures_kept = 0;
+    EXPECT_GT(run_stress(options).total("confused").wrong, 0u) << static_cast<int>(missed);
+  }
+}
+
+TEST(AreaQuestions, ErrorsOfPairsAreFound) {
+  const Contender exact = question_kind_named("pairs").contender_named("exact");
+  StressOptions options = asking("pairs", "exact", 3);
+  options.families = {"gap"};
+  options.failures_kept = 0;
+  options.contenders = {{"careless",
+                         [exact](const Question& q, std::uint64_t seed) {
+                           Opinion opinion = exact.ask(q, seed);
+                           opinion.F *= 1.01;  // not F back: it breaks the swap, too
+                           return opinion;
+                         },
+                         true, true}};
+  const StressTally total = run_stress(options).total("careless");
+  EXPECT_GT(total.wrong, 0u);
+  const std::vector<std::string> names = property_names(*options.kind);
+  const auto swap = static_cast<std::size_t>(std::ranges::find(names, "swapped") - names.begin());
+  EXPECT_GT(total.properties.at(swap).broken, 0u);
+}
+
+TEST(AreaQuestions, AnExceptionOfTheOracleIsCounted) {
+  QuestionKind kind = question_kind_named("shafts");
+  kind.truth = [](const Question& q) -> Truth {
+    if (q.occluders.size() > 1) throw std::runtime_error("too much stands between");
+    return shaft_truth(q);
+  };
+  StressOptions options = asking("shafts", "exact", 29);
+  options.kind = &kind;
+  options.properties = false;
+  const StressReport report = run_stress(options);
+  EXPECT_EQ(report.questions, 29u);
+  const StressTally total = report.total("exact");
+  EXPECT_GT(total.unjudged, 0u);
+  EXPECT_EQ(total.unjudged + total.none + total.some + total.all, 29u);
+  EXPECT_EQ(total.wrong, 0u);
+  ASSERT_EQ(report.unjudged.size(), total.unjudged);
+  EXPECT_EQ(report.unjudged[0].exception, "too much stands between");
+}
+
+TEST(AreaQuestions, HaveTheScenesOfPointsAndAReceiver) {
+  for (const QuestionFamily& family : question_families()) {
+    Random random(family.name), again(family.name), of_receiver("receiver");
+    const Question point = draw_question(family, departures()[0], random).question;
+    const Question area = draw_area_question(family, departures()[0], again, of_receiver).question;
+    EXPECT_TRUE(point.receiver.outer.empty());
+    EXPECT_GE(area.receiver.outer.size(), 3u);
+    EXPECT_EQ(area.source.outer, point.source.outer) << family.name;
+    EXPECT_EQ(area.occluders.size(), point.occluders.size()) << family.name;
+  }
+}
+
+// --- The oracle of pairs -------------------------------------------------------------------------------------------
+
+/// Unit squares opposite at a distance of 1, and what stands between.
+Question squares(std::vector<Obstacle> occluders) {
+  Question question;
+  question.normal = {0, 0, 1};
+  question.receiver = {rectangle(0, 0, 0, 1, 1), {}};
+  question.source = {reversed(rectangle(1, 0, 0, 1, 1)), {}};
+  question.occluders = std::move(occluders);
+  return question;
+}
+
+/// Everything turned, and rounded.
+Question turned(Question question) {
+  Random random("turned");
+  const Placement place = random_rotation("turned", {5, -3, 7}, 1, random);
+  question.receiver = place(question.receiver);
+  question.source = place(question.source);
+  for (Obstacle& obstacle : question.occluders) {
+    for (Polygon& face : obstacle.faces) face = place(face);
+  }
+  return question;
+}
+
+void expect_form_factor(const Question& question, long double F, const char* what) {
+  for (const Care care : {Care::sampled, Care::full}) {
+    const PairOracleAnswer answer = oracle_pair_form_factors(question, care);
+    EXPECT_LE(std::fabs(answer.F - F), answer.error + 1e-14L) << what;
+    EXPECT_LT(answer.error, care == Care::full ? 1e-7L : 3e-3L) << what;
+  }
+}
+
+constexpr long double kSquares = 0.199824895698387351L;  // opposite unit squares
+
+TEST(PairOracle, KnowsPublishedValues) {
+  // Shapiro's test: a half-size plate at 3/4 of the distance.
+  const Question plate = squares({sheet(rectangle(0.75, 0.25, 0.25, 0.75, 0.75))});
+  expect_form_factor(squares({}), kSquares, "nothing between");
+  expect_form_factor(plate, 0.115620602132415L, "a plate");
+  expect_form_factor(turned(plate), 0.115620602132415L, "a plate, turned");
+  expect_form_factor(squares({sheet(rectangle(0.5, -1, -1, 2, 2))}), 0, "all hidden");
+}
+
+/// Half of the receiver is left, which by symmetry is half of the form factor.
+TEST(PairOracle, SettlesContacts) {
+  const Question on_it = squares({box({0.5, 0, 0}, {1, 1, 0x1p-40})});
+  expect_form_factor(squares({sheet(rectangle(0, 0.5, 0, 1, 1))}), kSquares / 2, "a rug");
+  expect_form_factor(squares({sheet(rectangle(0, 0.5, 0, 1, 0.5)), sheet(rectangle(0, 0.5, 0.5, 1, 1))}), kSquares / 2,
+                     "two rugs");
+  expect_form_factor(on_it, kSquares / 2, "a thin box on the receiver");
+  expect_form_factor(turned(on_it), kSquares / 2, "a thin box on the receiver, turned");
+  expect_form_factor(squares({box({0.5, 0, -1}, {1, 1, 0})}), kSquares, "a box behind the receiver");
+}
+
+TEST(PairOracle, SaysWhatItCannotTell) {
+  Question question = squares({});
+  for (Vec3& v : question.source.outer) v.z = 0x1p-50;
+  EXPECT_THROW(oracle_pair_form_factors(question, Care::sampled), OutOfReach);
+}
+
+}  // namespace
+}  // namespace exitance
