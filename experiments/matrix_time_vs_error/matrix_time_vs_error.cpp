@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,7 @@ std::vector<Subject> subjects() {
           {"box room 1/3 m", read("box_on_floor.toml"), 0.3334, all},
           {"Cornell box 0.1 m", read("cornell_box_closed.toml"), 0.1, all},
           {"furnished room of 100", make_furnished_room(100, 1), 0, {1e-2, 1e-3, 1e-4}, 1e-5, 4096},
+          {"furnished room of 200", make_furnished_room(200, 1), 0, {1e-2, 1e-3}, 1e-4, 4096},
           {"box room 1/7 m", read("box_on_floor.toml"), 0.1429, {1e-3, 1e-5, 1e-7}, 1e-8, 64}};
 }
 
@@ -82,6 +84,11 @@ std::vector<Series> all_series(const Subject& subject, bool reduced) {
           ray_series("one centre ray", {.estimator = Estimator::centre}, {1})};
 }
 
+/// Exact form factors and single rays claim no standard error.
+std::string or_none(const std::optional<double>& value) {
+  return value ? digits(*value) : "none";
+}
+
 void answer(const Subject& subject, bool reduced, CsvTable& table, CsvTable& truths, Plot& plot) {
   const PolygonSoup soup = make_soup(subject.scene);
   const PatchMesh mesh = make_patch_mesh(subject.scene, soup, {.patch_size = subject.patch_size});
@@ -98,13 +105,13 @@ void answer(const Subject& subject, bool reduced, CsvTable& table, CsvTable& tru
     Curve curve, of_number;
     for (const Contender& contender : series.contenders) {
       const ContenderRun made = run(contender, mesh, exchange, {}, {});
-      const MatrixComparison errors = compare(known.truth, made.F, 0);
+      const MatrixComparison errors = compare(known.truth, made.F, 0, made.standard_errors);
       const auto of = [&](PairClass kind) { return errors.of_class[static_cast<std::size_t>(kind)]; };
-      table.rows.push_back({subject.name, series.name, contender.name, fmt::format("{}", exchange.size()),
-                            digits(errors.facing.rms), digits(errors.facing.largest),
-                            digits(errors.facing.largest_of_999), digits(of(PairClass::open).largest),
-                            digits(of(PairClass::partial).rms), fmt::format("{}", made.rays),
-                            fmt::format("{}", made.queries), fmt::format("{:.3g}", made.cpu_seconds)});
+      table.rows.push_back(
+          {subject.name, series.name, contender.name, fmt::format("{}", exchange.size()), digits(errors.facing.rms),
+           digits(errors.facing.largest), digits(errors.facing.largest_of_999), digits(of(PairClass::open).largest),
+           digits(of(PairClass::partial).rms), or_none(made.standard_error), or_none(errors.beyond_3_standard_errors),
+           fmt::format("{}", made.rays), fmt::format("{}", made.queries), fmt::format("{:.3g}", made.cpu_seconds)});
       curve.emplace_back(made.cpu_seconds, errors.facing.rms);
       of_number.emplace_back(std::stod(contender.name), errors.facing.rms);
       fmt::print(stderr, "{}, {} {}: {:.2g} in {:.3g} s\n", subject.name, series.name, contender.name,
@@ -124,7 +131,8 @@ int ask(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   CsvTable table{{"scene", "method", "rays_or_tolerance", "patches", "rms_error", "largest_error", "largest_of_999",
-                  "largest_of_open", "rms_of_partial", "rays", "queries", "cpu_seconds"},
+                  "largest_of_open", "rms_of_partial", "mean_standard_error", "beyond_3_standard_errors", "rays",
+                  "queries", "cpu_seconds"},
                  {}};
   CsvTable truths{{"scene", "patches", "tolerance", "pairs_by_points", "largest_error", "rms_error", "cpu_seconds"},
                   {}};

@@ -22,11 +22,11 @@
 #include "src/cli/verbs.h"
 #include "src/output/faces.h"
 #include "src/output/process_memory.h"
+#include "src/output/run_clock.h"
 #include "src/output/vtk.h"
 #include "src/reference/comparison.h"
 #include "src/reference/matrix_solution.h"
 #include "src/reference/pair_run.h"
-#include "src/output/run_clock.h"
 #include "src/scene/input_error.h"
 #include "src/scene/scene_hash.h"
 #include "src/solve/radiosity_system.h"
@@ -98,8 +98,11 @@ class Compare {
         "Form factors are means over patches. SAMPLER: sobol (default), owen, stratified, random. ESTIMATOR: kernel\n"
         "(default), fraction, hemisphere, centre. Both are those of solve --visibility rays. fast: without Embree's "
         "robust\n"
-        "mode; untold: rays are not told of contacts. Times are of one run of this program, so that their ratios count.\n"
-        "\"std. error\" is what rays say of themselves. FILE.vtp has for each patch of a worst pair: contender (its place\n"
+        "mode; untold: rays are not told of contacts. Times are of one run of this program, so that their ratios "
+        "count.\n"
+        "\"std. error\" is what rays say of themselves, in the mean and of each pair; \"beyond 3\" the share of pairs "
+        "that are\n"
+        "wrong by more than three of it. FILE.vtp has for each patch of a worst pair: contender (its place\n"
         "in --against, from 0), rank (from 1), source (0: receiver), F, truth, difference, reason: " +
         all_reasons() + ".");
   }
@@ -186,7 +189,7 @@ class Compare {
 
   void judge(const Contender& contender, const ContenderRun& run, const Subject& subject) {
     CompareReport::Entry entry{.name = contender.name,
-                               .errors = compare(truth_matrix_, run.F, worst_),
+                               .errors = compare(truth_matrix_, run.F, worst_, run.standard_errors),
                                .faults = {},
                                .why_no_solution = {},
                                .B = {},

@@ -41,6 +41,7 @@ Json json_of(const Entry& e) {
                      {"F", w.F},
                      {"truth", w.truth},
                      {"truth_error", w.truth_error},
+                     {"standard_error", w.standard_error ? number(*w.standard_error) : Json(nullptr)},
                      {"reason", describe(e.faults[k])}});
   }
   return {{"name", e.name},
@@ -49,6 +50,8 @@ Json json_of(const Entry& e) {
           {"solution_against_reference", json_of(e.B_reference)},
           {"why_no_solution", e.why_no_solution.empty() ? Json(nullptr) : Json(e.why_no_solution)},
           {"mean_standard_error", e.standard_error ? number(*e.standard_error) : Json(nullptr)},
+          {"beyond_3_standard_errors",
+           e.errors.beyond_3_standard_errors ? number(*e.errors.beyond_3_standard_errors) : Json(nullptr)},
           {"rays", e.rays},
           {"queries", e.queries},
           {"seconds", e.seconds},
@@ -63,20 +66,24 @@ std::string or_dash(const std::optional<SolutionErrors>& errors, double Solution
 }
 
 std::string table(const CompareReport& r) {
-  std::string text = fmt::format(
-      "\n  {:<26}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>12}{:>12}{:>9}{:>9}{:>9}{:>9}\n", "", "max", "99.9 %",
-      "rms", "of open", "blocked", "partial", "B", "B worst 1%", "std. error", "Mrays", "Mpoints", "MiB", "CPU s");
+  std::string text =
+      fmt::format("\n  {:<26}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>12}{:>12}{:>10}{:>9}{:>9}{:>9}{:>9}\n", "",
+                  "max", "99.9 %", "rms", "of open", "blocked", "partial", "B", "B worst 1%", "std. error", "beyond 3",
+                  "Mrays", "Mpoints", "MiB", "CPU s");
   for (const Entry& e : r.entries) {
     const auto largest = [&](PairClass kind) { return e.errors.of_class[static_cast<std::size_t>(kind)].largest; };
     text += fmt::format(
         "  "
-        "{:<26}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10}{:>12}{:>12}{:>9.3g}{:>9.3g}{:>9.3g}{:>9.3g}"
+        "{:<26}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10.2e}{:>10}{:>12}{:>12}{:>10}{:>9.3g}{:>9.3g}{:>9.3g}{:"
+        ">9.3g}"
         "\n",
         e.name, e.errors.facing.largest, e.errors.facing.largest_of_999, e.errors.facing.rms, largest(PairClass::open),
         largest(PairClass::blocked), largest(PairClass::partial), or_dash(e.B, &SolutionErrors::all),
         or_dash(e.B, &SolutionErrors::worst_1_percent),
-        e.standard_error ? fmt::format("{:.2e}", *e.standard_error) : "-", 1e-6 * static_cast<double>(e.rays),
-        1e-6 * static_cast<double>(e.queries), 0x1p-20 * static_cast<double>(e.matrix_bytes), e.cpu_seconds);
+        e.standard_error ? fmt::format("{:.2e}", *e.standard_error) : "-",
+        e.errors.beyond_3_standard_errors ? fmt::format("{:.2g} %", 100 * *e.errors.beyond_3_standard_errors) : "-",
+        1e-6 * static_cast<double>(e.rays), 1e-6 * static_cast<double>(e.queries),
+        0x1p-20 * static_cast<double>(e.matrix_bytes), e.cpu_seconds);
   }
   return text;
 }
@@ -94,12 +101,12 @@ std::string against_reference(const CompareReport& r) {
 
 std::string worst_pairs(const Entry& e) {
   if (e.errors.worst.empty()) return fmt::format("\n{}: every form factor is right\n", e.name);
-  std::string text = fmt::format("\n{}: worst pairs\n  {:>8}{:>8}{:>13}{:>13}{:>11}  reason\n", e.name, "from", "to",
-                                 "F", "truth", "error");
+  std::string text = fmt::format("\n{}: worst pairs\n  {:>8}{:>8}{:>13}{:>13}{:>11}{:>12}  reason\n", e.name, "from",
+                                 "to", "F", "truth", "error", "std. error");
   for (std::size_t k = 0; k < e.errors.worst.size(); ++k) {
     const WorstPair& w = e.errors.worst[k];
-    text += fmt::format("  {:>8}{:>8}{:>13.6g}{:>13.6g}{:>11.2e}  {}\n", w.i, w.j, w.F, w.truth, w.F - w.truth,
-                        describe(e.faults[k]));
+    text += fmt::format("  {:>8}{:>8}{:>13.6g}{:>13.6g}{:>11.2e}{:>12}  {}\n", w.i, w.j, w.F, w.truth, w.F - w.truth,
+                        w.standard_error ? fmt::format("{:.2e}", *w.standard_error) : "-", describe(e.faults[k]));
   }
   return text;
 }

@@ -25,7 +25,7 @@ struct CompareReport {
     std::string why_no_solution;                ///< in words; empty where there is one
     std::optional<SolutionErrors> B;            ///< against the solution by the truth, on the same patches
     std::optional<SolutionErrors> B_reference;  ///< against the reference, meshing included
-    std::optional<double> standard_error;  ///< that rays claim, in the mean
+    std::optional<double> standard_error;       ///< that rays claim, in the mean
     std::uint64_t rays = 0, queries = 0, matrix_bytes = 0, peak_memory_bytes = 0;
     double seconds = 0, cpu_seconds = 0;
   };

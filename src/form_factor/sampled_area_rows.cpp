@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/contour_form_factor.h"
 #include "src/form_factor/area_rows.h"
@@ -18,6 +19,7 @@ constexpr std::size_t kBlock = 32;
 
 struct ExchangeRow {
   PairRows pairs;
+  std::vector<double> standard_error, reverse_standard_error;  // one for each F and F_reverse
   PointRowStatistics statistics;
 };
 
@@ -48,6 +50,8 @@ class ExchangeRows {
       row.pairs.F_error.push_back(kBoundOfAny);
       row.pairs.F_reverse_error.push_back(kBoundOfAny);
       row.pairs.mark.push_back(0);
+      row.standard_error.push_back(f.standard_error / A_i);
+      row.reverse_standard_error.push_back(f.standard_error / A_j);
     }
     row.pairs.row.push_back(static_cast<std::uint32_t>(i));
     row.pairs.row_first.push_back(row.pairs.column.size());
@@ -79,18 +83,29 @@ SampledAreaRows by_shadow_rays(const PatchMesh& mesh, const PolygonSoup& soup, E
   const ExchangeRows rows(mesh, soup, unit, options);
   SampledAreaRows result;
   PairRows all;
+  std::vector<double> error, reverse_error;
   for_each_row(
       rows.size(), kBlock, [&](std::size_t i) { return rows.row(i); },
       [&](const ExchangeRow& row) {
         append(all, row.pairs);
         result.statistics += row.statistics;
+        if (unit == ExchangeScene::Unit::element) return;
+        error.insert(error.end(), row.standard_error.begin(), row.standard_error.end());
+        reverse_error.insert(reverse_error.end(), row.reverse_standard_error.begin(), row.reverse_standard_error.end());
       },
       [&](std::size_t done) {
         const double left = 1 - static_cast<double>(done) / static_cast<double>(rows.size());
         if (progress) progress(1 - left * left, "form factors");
       });
-  result.F = matrix_of(std::span(&all, 1), static_cast<std::uint32_t>(rows.size()));
-  if (unit == ExchangeScene::Unit::element) result.F = sum_to_patches(result.F, mesh);
+  const auto n = static_cast<std::uint32_t>(rows.size());
+  result.F = matrix_of(std::span(&all, 1), n);
+  if (unit == ExchangeScene::Unit::element) {
+    result.F = sum_to_patches(result.F, mesh);
+    return result;
+  }
+  all.F = std::move(error);
+  all.F_reverse = std::move(reverse_error);
+  result.standard_error = matrix_of(std::span(&all, 1), n).F;  // in the same places
   return result;
 }
 
@@ -113,7 +128,9 @@ SampledAreaRows by_hemispheres(const PatchMesh& mesh, const PolygonSoup& soup, E
           result.F.column.push_back(patch);
           result.F.F.push_back(hits.share(count));
           result.F.F_error.push_back(kBoundOfAny);
-          result.statistics.standard_error_sum += hits.standard_error(count);
+          const double error = hits.standard_error(count);
+          if (unit == ExchangeScene::Unit::patch) result.standard_error.push_back(error);
+          result.statistics.standard_error_sum += error;
         }
         result.F.row_first.push_back(result.F.F.size());
         result.statistics.rays += hits.rays - hits.covered;

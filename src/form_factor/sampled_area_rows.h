@@ -1,6 +1,8 @@
 #pragma once
 // Rows of form factors averaged over elements, by rays.
 
+#include <vector>
+
 #include "src/form_factor/form_factor_matrix.h"
 #include "src/form_factor/pair_form_factor.h"
 #include "src/output/progress.h"
@@ -13,6 +15,9 @@ namespace exitance {
 /// Like area_rows: elements × patches; or patches × patches, each as a whole.
 struct SampledAreaRows {
   FormFactorMatrix F;  ///< F_error is 1, the only bound that rays have
+  /// One for each F: what SampledFormFactor and HemisphereHits say of it; infinite for Estimator::centre. Of patches as
+  /// a whole only: rows of elements have none.
+  std::vector<double> standard_error;
   /// covered_points: receivers that may be covered, as in AreaRows; the others count for closure.
   PointRowStatistics statistics;
 };

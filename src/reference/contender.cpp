@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "src/form_factor/sampled_area_rows.h"
 #include "src/output/run_clock.h"
 #include "src/reference/matrix_file.h"
@@ -34,8 +36,10 @@ void by(const RayOptions& rays, const PatchMesh& mesh, const ExchangeScene& exch
                                            });
   const PointRowStatistics& statistics = rows.statistics;
   result.rays = statistics.rays;
-  if (statistics.sampled > 0)
+  if (statistics.sampled > 0) {
     result.standard_error = statistics.standard_error_sum / static_cast<double>(statistics.sampled);
+    result.standard_errors = std::move(rows.standard_error);
+  }
   result.F = std::move(rows.F);
 }
 

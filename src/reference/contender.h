@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "src/form_factor/form_factor_matrix.h"
 #include "src/form_factor/pair_form_factor.h"
@@ -32,6 +33,7 @@ struct ContenderRun {
   std::uint64_t rays = 0;                ///< that were cast
   std::uint64_t queries = 0;             ///< exact ones, from points
   std::optional<double> standard_error;  ///< of rays, as they claim it: mean over their form factors; none of one ray
+  std::vector<double> standard_errors;   ///< the same of each F; empty where nothing is claimed
   double seconds = 0;                    ///< by the clock on the wall
   double cpu_seconds = 0;                ///< of all threads
 };

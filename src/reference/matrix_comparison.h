@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "src/form_factor/form_factor_matrix.h"
@@ -32,16 +34,22 @@ struct EntryErrors {
 struct WorstPair {
   std::uint32_t i = 0, j = 0;
   double F = 0, truth = 0;
-  double truth_error = 0;  ///< of what is taken for true
+  double truth_error = 0;                ///< of what is taken for true
+  std::optional<double> standard_error;  ///< that is claimed of F
 };
 
 struct MatrixComparison {
   std::array<EntryErrors, 4> of_class;  ///< by PairClass of the truth
   EntryErrors facing;                   ///< of all pairs that do not face away
   std::vector<WorstPair> worst;         ///< largest |F − truth| first, of all pairs; without those that are right
+  /// Share of the pairs that do not face away whose |F − truth| is more than three standard errors and the truth's own
+  /// error; none without standard errors.
+  std::optional<double> beyond_3_standard_errors;
 };
 
-/// Both are patches × patches, or std::invalid_argument. worst: so many pairs at most.
-MatrixComparison compare(const MatrixTruth& truth, const FormFactorMatrix& F, std::size_t worst);
+/// Both are patches × patches, or std::invalid_argument. worst: so many pairs at most. standard_error: one for each
+/// entry of F, or none at all; what has no entry claims to be 0 without error.
+MatrixComparison compare(const MatrixTruth& truth, const FormFactorMatrix& F, std::size_t worst,
+                         std::span<const double> standard_error = {});
 
 }  // namespace exitance

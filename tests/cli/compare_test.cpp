@@ -63,6 +63,14 @@ TEST_F(CompareTest, MoreRaysAreLessWrongAndExactFormFactorsAreRight) {
   EXPECT_GT(hemisphere.at("mean_standard_error"), 0);
   EXPECT_TRUE(centre.at("mean_standard_error").is_null()) << "one ray has no spread";
   EXPECT_TRUE(exact.at("mean_standard_error").is_null());
+  for (const auto& c : {many, hemisphere}) {
+    EXPECT_GT(c.at("worst")[0].at("standard_error"), 0);
+    EXPECT_LT(c.at("beyond_3_standard_errors"), 0.05);
+  }
+  for (const auto& c : {centre, exact}) {
+    EXPECT_TRUE(c.at("worst")[0].at("standard_error").is_null());
+    EXPECT_TRUE(c.at("beyond_3_standard_errors").is_null());
+  }
   EXPECT_EQ(few.at("worst").size(), 10u);
   EXPECT_EQ(few.at("worst")[0].at("reason"), "too few rays");
   EXPECT_LE(result.at("truth").at("largest_error"), 1e-10);

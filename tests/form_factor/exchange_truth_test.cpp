@@ -1,5 +1,5 @@
 // Obstructed form factors against truth by another algorithm (exchange_truth.h). Values that take long stand in truth/,
-// one file a scene; WriteTruth makes them anew (--gtest_also_run_disabled_tests).
+// one file a scene; the disabled tests Write add what is missing (--gtest_also_run_disabled_tests).
 
 #include "src/stress/exchange_truth.h"
 
@@ -180,7 +180,7 @@ std::filesystem::path file_of(const std::string& name) {
 }
 
 /// Lines `i,j,kind,F,error`, after comments and a header.
-std::vector<Entry> truth_of(const std::string& name) {
+std::vector<Entry> entries_of(const std::string& name) {
   std::ifstream in(file_of(name));
   std::vector<Entry> entries;
   for (std::string line; std::getline(in, line);) {
@@ -195,7 +195,12 @@ std::vector<Entry> truth_of(const std::string& name) {
     EXPECT_TRUE(row) << name << ": " << line;
     entries.push_back(e);
   }
-  EXPECT_GE(entries.size(), 65u) << name;
+  return entries;
+}
+
+std::vector<Entry> truth_of(const std::string& name) {
+  const std::vector<Entry> entries = entries_of(name);
+  EXPECT_GE(entries.size(), 180u) << name;
   return entries;
 }
 
@@ -291,12 +296,18 @@ TEST(RandomPairs, FormFactorsAreWithinTheirErrors) {
 }
 
 /// The value along axis 0. Events that were missed would be others along axis 1: what the two differ is part of the
-/// error.
+/// error. Where that is more than the two know of, the one that axis 2 agrees with is the value.
 template <class Truth>
 std::string row_of(int i, int j, const PairFormFactor& f, double area, const Truth& truth) {
   constexpr std::array names{"facing_away", "open", "blocked", "partial"};
-  const ExchangeTruth t = truth(0);
-  const long double error = std::max(t.error, std::fabs(t.integral - truth(1).integral));
+  ExchangeTruth t = truth(0), other = truth(1);
+  const auto apart = [&] { return std::fabs(t.integral - other.integral); };
+  if (apart() > t.error + other.error) {
+    const ExchangeTruth third = truth(2);
+    if (std::fabs(other.integral - third.integral) < std::fabs(t.integral - third.integral)) t = other;
+    other = third;
+  }
+  const long double error = std::max(t.error, apart());
   return fmt::format("{},{},{},{:.20g},{:.2g}\n", i, j, names[static_cast<std::size_t>(f.kind)], t.integral / area,
                      error / area);
 }
@@ -308,27 +319,38 @@ std::string head(const std::string& what) {
          "i,j,kind,F,error\n";
 }
 
+/// Values that are there already are kept, and every new one is written as soon as it is known: some take a minute.
 TEST_P(TruthOfScene, DISABLED_Write) {
   const std::string name = GetParam();
   const Meshed meshed(name);
   PairIntegrator integrator = meshed.integrator();
+  const auto coarsely = [&](int i, int j) {
+    PairOptions options;
+    options.tolerance = 1e-3;
+    return integrator.form_factor(static_cast<std::size_t>(i), static_cast<std::size_t>(j), options);
+  };
   std::array left{0, 40, 20, 140};  // of each class
   std::set<std::pair<int, int>> asked;
+  if (!std::filesystem::exists(file_of(name)))
+    std::ofstream(file_of(name)) << head(
+        "F_ij of pairs of patches of the scene " + name +
+        ", exchange_scenes.h: 40 open, 20 blocked, 140 partial ones, or as many as there are.");
+  for (const Entry& e : entries_of(name)) {
+    asked.emplace(std::min(e.i, e.j), std::max(e.i, e.j));
+    --left[static_cast<std::size_t>(coarsely(e.i, e.j).kind)];
+  }
+  std::ofstream file(file_of(name), std::ios::app);
   Random random(name);
-  std::string text = head("F_ij of pairs of patches of the scene " + name + ", exchange_scenes.h.");
   const int last = static_cast<int>(meshed.size()) - 1;
   for (int tries = 0; tries < 100'000 && left[1] + left[2] + left[3] > 0; ++tries) {
     const int i = random.whole(0, last), j = random.whole(0, last);
     if (i == j || !asked.emplace(std::min(i, j), std::max(i, j)).second) continue;
-    PairOptions options;
-    options.tolerance = 1e-3;
-    const PairFormFactor f = integrator.form_factor(static_cast<std::size_t>(i), static_cast<std::size_t>(j), options);
+    const PairFormFactor f = coarsely(i, j);
     int& wanted = left[static_cast<std::size_t>(f.kind)];
-    if (wanted == 0) continue;
+    if (wanted <= 0) continue;
     --wanted;
-    text += row_of(i, j, f, meshed.area(i), [&](int axis) { return meshed.truth(i, j, axis); });
+    file << row_of(i, j, f, meshed.area(i), [&](int axis) { return meshed.truth(i, j, axis); }) << std::flush;
   }
-  std::ofstream(file_of(name)) << text;
 }
 
 TEST(RandomPairs, DISABLED_Write) {

@@ -5,8 +5,10 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "src/form_factor/area_rows.h"
+#include "src/form_factor/pair_rows.h"
 #include "src/form_factor/point_rows.h"
 #include "src/form_factor/sampled_area_rows.h"
 #include "src/scene/reader.h"
@@ -139,6 +141,40 @@ TEST(RaySampledVisibility, APatchIsAsItsElements) {
   for (const Element& e : r.mesh.elements) area.push_back(e.area);
   first.push_back(static_cast<std::uint32_t>(area.size()));
   EXPECT_LT(rms(dense(average_rows(elements.F, first, area)), dense(patches.F)), 1e-3);
+}
+
+TEST(RaySampledVisibility, EveryPairOfPatchesHasItsStandardError) {
+  const Room& r = room();
+  PairOptions exactly;
+  exactly.tolerance = 1e-6;
+  const ExchangeScene exchange(r.soup, r.mesh);
+  std::vector<std::uint32_t> all(exchange.size());
+  std::iota(all.begin(), all.end(), 0u);
+  PairStatistics statistics;
+  const PairRows known = pair_rows(exchange, all, exactly, statistics);
+  const std::vector<double> truth = dense(matrix_of(std::span(&known, 1), static_cast<std::uint32_t>(all.size())));
+  for (const Estimator estimator : {Estimator::kernel, Estimator::hemisphere}) {
+    const RayOptions options{.rays = 1024, .replicates = 16, .sampler = Sampler::random, .estimator = estimator};
+    const SampledAreaRows rows = sampled_area_rows(r.mesh, r.soup, ExchangeScene::Unit::patch, options);
+    ASSERT_EQ(rows.standard_error.size(), rows.F.F.size());
+    double sum = 0, squares = 0;
+    int count = 0, beyond_4 = 0;
+    for (std::size_t i = 0; i < rows.F.rows(); ++i) {
+      for (std::uint64_t k = rows.F.row_first[i]; k < rows.F.row_first[i + 1]; ++k) {
+        const double error = rows.standard_error[k];
+        sum += error;
+        if (error == 0) continue;
+        const double apart = (rows.F.F[k] - truth[i * rows.F.columns + rows.F.column[k]]) / error;
+        squares += apart * apart;
+        ++count;
+        beyond_4 += std::fabs(apart) > 4;
+      }
+    }
+    EXPECT_NEAR(sum, rows.statistics.standard_error_sum, 1e-12 * sum);
+    EXPECT_NEAR(std::sqrt(squares / count), 1, 0.15) << "random points: errors are as large as they say";
+    EXPECT_LE(beyond_4, count / 100);
+  }
+  EXPECT_TRUE(sampled_area_rows(r.mesh, r.soup, ExchangeScene::Unit::element, {.rays = 4}).standard_error.empty());
 }
 
 TEST(RaySampledVisibility, AnyNumberOfThreadsGivesTheSameBits) {
