@@ -27,14 +27,14 @@ class Lap {
 Obstacles::Obstacles(const EditedScene& scene) : soup_(make_soup(scene.scene())), contacts_(soup_) {
   for (std::uint32_t object = 0; object < scene.scene().objects.size(); ++object) {
     const EditedScene::Range range = scene.surfaces_of(object);
-    facets_.emplace_back(soup_.first_facet(range.first), soup_.first_facet(range.last));
+    facets_.push_back({soup_.first_facet(range.first), soup_.first_facet(range.last)});
   }
 }
 
 std::vector<std::uint32_t> Obstacles::items_of(std::uint32_t object) const {
   const auto facets = static_cast<std::uint32_t>(soup_.facets().size());
   std::vector<std::uint32_t> items;
-  for (std::uint32_t f = facets_[object].first; f < facets_[object].second; ++f) {
+  for (std::uint32_t f = facets_[object].first; f < facets_[object].last; ++f) {
     const std::uint32_t shell = soup_.facets()[f].shell;
     items.push_back(shell != kNone && soup_.shells()[shell].convex ? facets + shell : f);
   }

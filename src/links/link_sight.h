@@ -9,6 +9,7 @@
 #include "geometry/shaft.h"
 #include "geometry/viewpoint.h"
 #include "src/links/patch_tree.h"
+#include "src/scene/trespass.h"
 #include "src/visibility/contacts.h"
 
 namespace exitance {
@@ -26,13 +27,14 @@ class Obstacles {
   /// which several objects may close together.
   std::vector<std::uint32_t> items_of(std::uint32_t object) const;
   std::size_t objects() const { return facets_.size(); }
-  /// The object's facets, first … last − 1.
-  std::pair<std::uint32_t, std::uint32_t> facets_of(std::uint32_t object) const { return facets_[object]; }
+  FacetRange facets_of(std::uint32_t object) const { return facets_[object]; }
+  /// By object.
+  std::span<const FacetRange> facets() const { return facets_; }
 
  private:
   PolygonSoup soup_;
   Contacts contacts_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> facets_;  ///< by object
+  std::vector<FacetRange> facets_;  ///< by object
 };
 
 /// What enters the shaft of a link, as far as it was asked about.
