@@ -103,7 +103,8 @@ class Dynamic {
     verb.footer(
         "frames.json is a list: frame 0 is the scene before the first event, each other one follows the events of one\n"
         "time. error and error_worst_1_percent are eq. 7 of George et al. (1990) over elements, against the converged\n"
-        "solution of that frame; null where there is no reference. Ctrl-C saves the frames so far, exit code 4.");
+        "solution of that frame; null where there is no reference. Ctrl-C saves the frames so far, exit code 4.\n"
+        "Methods by links link all pairs of patches: clusters of patches are for solve --method hierarchical.");
   }
 
   void run() {
@@ -128,6 +129,10 @@ class Dynamic {
       how.links.tolerance = options_.tolerance;
       how.links.mesh.memory_limit = memory_limit_.bytes();
       how.method = *by_links;
+      how.path = path_;
+      if (budget_ms_) how.budget = *budget_ms_ / 1000;
+      how.work_off = work_off_;
+      how.interruptible = time_limit_.has_value();
       how.references = reference_;
       how.images = images_;
       how.image_size = image_size_;
@@ -135,6 +140,7 @@ class Dynamic {
       const LinkFrames frames = follow_links(given, how, draft_);
       frames_ = frames.frames;
       summary_ = frames.summary;
+      partial_ = partial_ || frames.unfinished;
       return finish(folder);
     }
     links_.refuse_any("rebuild, direct, hvt or hvt-peu");
@@ -161,10 +167,14 @@ class Dynamic {
  private:
   /// What has no meaning for links.
   void refuse_shots_only() const {
-    for (const char* name : {"--strategy", "--threshold", "--importance", "--importance-points", "--object-terms", "--budget-shots",
-                             "--budget-ms", "--replay", "--no-log", "--work-off", "--references", "--elements"}) {
+    for (const char* name : {"--strategy", "--threshold", "--importance", "--importance-points", "--object-terms",
+                             "--budget-shots", "--replay", "--no-log", "--references", "--elements"}) {
       if (verb_.get_option(name)->count() > 0)
         throw CLI::ValidationError(name, "needs --method scratch, restart or redistribute");
+    }
+    for (const char* name : {"--budget-ms", "--work-off"}) {
+      if (method_ == "rebuild" && verb_.get_option(name)->count() > 0)
+        throw CLI::ValidationError(name, "has no meaning for --method rebuild, which does all or nothing");
     }
   }
 

@@ -4,12 +4,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 
+#include "src/cli/console.h"
 #include "src/cli/frame_files.h"
 #include "src/links/hierarchical_solution.h"
 #include "src/output/image.h"
 #include "src/output/mesh_faces.h"
+#include "src/scene/trespass.h"
 #include "src/solve/scene_solution.h"
 
 namespace exitance {
@@ -33,22 +36,55 @@ class Frames {
 
   LinkFrames follow() {
     const std::vector<Event>& events = given_.events;
-    add(events.empty() ? 0 : std::min(0.0, events.front().time), {}, links_.build(options_.stop));
+    bool left = false;  // something, by the last update
+    const LinkUpdate built = links_.build(options_.stop);
+    result_.unfinished = built.stopped;
+    add(events.empty() ? 0 : std::min(0.0, events.front().time), {}, built);
     for (std::size_t next = 0; next < events.size() && !(options_.stop && options_.stop());) {
       const double time = events[next].time;
       std::vector<Edit> edits;
       std::vector<std::string> names;
+      std::map<std::uint32_t, std::uint32_t> lines;  // of the last edit of each object
       for (; next < events.size() && events[next].time == time; ++next) {
         edits.push_back(events[next].edit);
+        lines[events[next].edit.object] = events[next].line;
         names.push_back(
             fmt::format("{} {}", name_of(edits.back().operation), given_.scene.objects[edits.back().object].name));
       }
-      add(time, names, links_.update(edits, options_.method));
+      const LinkUpdate update = links_.update(edits, options_.method, interruption());
+      for (const auto& [object, line] : lines) warn(object, line);
+      add(time, names, update);
+      left = update.pairs_left > 0;
     }
+    if (left && options_.work_off && !(options_.stop && options_.stop())) {
+      const LinkUpdate rest = links_.work_off(interruption(false));
+      add(events.back().time, {"work off"}, rest);
+      left = rest.pairs_left > 0;
+    }
+    result_.unfinished = result_.unfinished || (left && !options_.budget);
     return std::move(result_);
   }
 
  private:
+  /// From now on.
+  LinkInterruption interruption(bool by_budget = true) const {
+    LinkInterruption how;
+    by_budget = by_budget && options_.budget;
+    if (!by_budget && !options_.interruptible) return how;
+    const auto start = std::chrono::steady_clock::now();
+    how.stop = [this, start, by_budget] {
+      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+      return (by_budget && spent.count() >= *options_.budget) || (options_.interruptible && options_.stop());
+    };
+    return how;
+  }
+
+  void warn(std::uint32_t object, std::uint32_t line) const {
+    const Obstacles& obstacles = links_.obstacles();
+    for (const std::string& warning : find_trespass(links_.scene(), obstacles.soup(), obstacles.facets(), object))
+      print_warning(fmt::format("{}:{}: {}", options_.path, line, warning));
+  }
+
   void add(double time, const std::vector<std::string>& edits, const LinkUpdate& update) {
     const std::vector<std::uint32_t> elements = links_.elements();
     const std::span<const double> B = links_.radiosity().B();
@@ -72,6 +108,7 @@ class Frames {
     frame["links_updated"] = update.work.links_updated;
     frame["links_affected"] = update.work.links_affected;
     frame["skipped"] = update.work.skipped;
+    frame["pairs_left"] = update.pairs_left;
     frame["refined"] = update.work.refined;
     frame["unrefined"] = update.work.unrefined;
     frame["form_factors"] = sight.form_factors;

@@ -18,18 +18,24 @@ std::optional<LinkMethod> link_method_named(const std::string& name);
 struct LinkFrameOptions {
   LinkOptions links;
   LinkMethod method = LinkMethod::hvt;
+  std::string path;                ///< of the scene file, for warnings
+  std::optional<double> budget;    ///< [s] after which the update of a frame ends; frame 0 is built in full
+  bool work_off = false;           ///< whether one more frame works off what such updates left
   bool references = true;          ///< whether errors are found
   bool images = true;              ///< whether pictures and VTP files are written
   std::uint32_t image_size = 800;  ///< of the pictures, in pixels
-  std::function<bool()> stop;      ///< asked between frames
+  std::function<bool()> stop;      ///< asked between frames; also within them where they can be interrupted
+  bool interruptible = false;      ///< whether stop ends updates, too
 };
 
 struct LinkFrames {
   nlohmann::ordered_json frames;  ///< a list, as frames.json
   std::string summary;            ///< a line a frame
+  bool unfinished = false;        ///< building ended before all links were refined, or updates left something
 };
 
-/// Follows the scene through its events; frame 0 is built before the first. Writes frame_*.png and frame_*.vtp into the
+/// Follows the scene through its events; frame 0 is built before the first. Warns of objects that pass through others
+/// or have left the scene. Writes frame_*.png and frame_*.vtp into the
 /// folder. Errors are eq. 7 of George et al. (1990) against the converged solution on the same links.
 LinkFrames follow_links(const DynamicScene& given, const LinkFrameOptions& options,
                         const std::filesystem::path& folder);

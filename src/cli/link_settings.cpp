@@ -7,6 +7,13 @@
 
 namespace exitance {
 
+namespace {
+
+/// From here on all pairs of them are too many.
+constexpr std::size_t kManySurfaces = 1000;
+
+}  // namespace
+
 void LinkSettings::add_to(CLI::App& verb) {
   of_links_.push_back(verb.add_option("--eps", eps2_,
                                       "Of links: refined while B F is above this share of the brightest E; as the "
@@ -20,6 +27,16 @@ void LinkSettings::add_to(CLI::App& verb) {
                           ->check(number_between(0)));
   of_links_.push_back(verb.add_option("--link-points", points_, "Points along the edge of a receiving sub-patch")
                           ->check(whole_number_between(1, 20))
+                          ->capture_default_str());
+}
+
+void LinkSettings::add_clusters_to(CLI::App& verb) {
+  clusters_ = "auto";
+  of_links_.push_back(verb.add_option("--clusters", clusters_,
+                                      "Link groups of patches, and patches only where B F of their groups may exceed "
+                                      "--eps; auto: in scenes of more than 1,000 surfaces. These are cut then, unless "
+                                      "--patch-size is given")
+                          ->check(CLI::IsMember({"auto", "on", "off"}))
                           ->capture_default_str());
 }
 
@@ -39,6 +56,7 @@ LinkOptions LinkSettings::chosen(const DynamicScene& scene, std::optional<double
   options.B_eps = B_eps_.value_or(given.B_eps.value_or(options.B_eps));
   options.smallest_area = smallest_area_.value_or(given.smallest_area.value_or(options.smallest_area));
   options.points_per_edge = points_;
+  options.clusters = clusters_ == "on" || (clusters_ == "auto" && scene.scene.surfaces.size() > kManySurfaces);
   if (options.eps1 > options.eps2) throw CLI::ValidationError("--eps1", "must not be above --eps");
   return options;
 }

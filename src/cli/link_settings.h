@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "src/links/linked_radiosity.h"
@@ -14,6 +15,8 @@ class LinkSettings {
  public:
   /// Adds --eps, --eps1, --min-area and --link-points. The object must live as long as the verb.
   void add_to(CLI::App& verb);
+  /// Adds --clusters; without it there are none.
+  void add_clusters_to(CLI::App& verb);
   /// Adds --b-eps.
   void add_update_to(CLI::App& verb);
 
@@ -27,6 +30,7 @@ class LinkSettings {
  private:
   std::optional<double> eps2_, eps1_, B_eps_, smallest_area_;
   unsigned points_ = 2;
+  std::string clusters_ = "off";
   std::vector<CLI::Option*> of_links_;
 };
 

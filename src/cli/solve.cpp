@@ -61,6 +61,8 @@ std::string summary(const Report& r) {
     line("sub-patches", fmt::format("{}", r.links->sub_patches));
     line("links", fmt::format("{} active, {} shadow, {} ghost; E-E {}, E-O {}, O-O {}", r.links->active,
                               r.links->shadow, r.links->ghost, r.links->environment, r.links->mixed, r.links->dynamic));
+    line("pairs of patches", fmt::format("{} have links; {} links of {} clusters", r.links->patch_pairs,
+                                         r.links->cluster_links, r.links->clusters));
   }
   line("pairs", fmt::format("{:.1f} % facing away, {:.1f} % open, {:.1f} % blocked, {:.1f} % partial",
                             percent(r.pairs.facing_away), percent(r.pairs.open), percent(r.pairs.blocked),
@@ -111,6 +113,7 @@ class Solve {
         ->capture_default_str();
     rays_.add_to(verb);
     links_.add_to(verb);
+    links_.add_clusters_to(verb);
     patch_size_ =
         verb.add_option("--patch-size", options_.mesh.patch_size,
                         "Longest edge of a patch [m]; 0: surfaces as they are; as the scene says unless given")
@@ -189,6 +192,10 @@ class Solve {
 
  private:
   HierarchicalSolution solve_links(const Scene& scene, Clock::time_point start) {
+    for (const char* name : {"--solver", "--form-factor-tolerance", "--elements"}) {
+      if (verb_.get_option(name)->count() > 0)
+        throw CLI::ValidationError(name, "has no meaning for --method hierarchical");
+    }
     if (receivers_ != "points") throw CLI::ValidationError("--receivers", "--method hierarchical receives at points");
     if (rays_.chosen(options_.seed)) throw CLI::ValidationError("--visibility", "--method hierarchical is exact");
     std::optional<double> patch_size;
@@ -213,8 +220,12 @@ class Solve {
                                  .environment = s.links.environment,
                                  .mixed = s.links.mixed,
                                  .dynamic = s.links.dynamic,
+                                 .patch_pairs = s.links.patch_pairs,
+                                 .clusters = s.clusters,
+                                 .cluster_links = s.cluster_links,
                                  .rounds = s.update.rounds,
                                  .bytes = s.links.bytes,
+                                 .cpu_seconds = s.update.cpu_seconds,
                                  .eps1 = s.options.eps1,
                                  .eps2 = s.options.eps2,
                                  .smallest_area = s.options.smallest_area};

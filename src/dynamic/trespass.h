@@ -1,5 +1,5 @@
 #pragma once
-// Objects where none can be in the world: through walls, or out of the scene. Both are legal geometry.
+// Objects of a version of a scene where none can be in the world.
 
 #include <cstdint>
 #include <string>
@@ -9,11 +9,7 @@
 
 namespace exitance {
 
-/// What is odd about where an object of the scene's present version stands, in words; empty where nothing is:
-///  - an edge of the object passes through the interior of another object's face, or the other way round (exact;
-///    touching, edge on edge and faces in contact are in order);
-///  - all of the object lies outside of the box around all others.
-/// Nothing is said of an object that is not there.
+/// What is odd about where an object of the scene's present version stands (src/scene/trespass.h).
 std::vector<std::string> find_trespass(const EditedScene& scene, const SceneVersion& version, std::uint32_t object);
 
 }  // namespace exitance

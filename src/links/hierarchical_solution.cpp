@@ -97,8 +97,11 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
     throw InputError(scene.name, 0, "no surface has an area; there is nothing to solve");
   }
   LinkedRadiosity links(scene, options.links);
-  HierarchicalSolution result{SceneSolution(make_soup(scene)), links.build(options.stop), {}, 0, links.options()};
+  HierarchicalSolution result{SceneSolution(make_soup(scene)), links.build(options.stop), {}, 0, 0, 0, links.options()};
   result.links = links.links().count(links.tree(), moves);
+  result.clusters = links.cluster_links().clusters().clusters().size();
+  result.cluster_links = links.cluster_links().links().size();
+  result.links.bytes += links.cluster_links().bytes();
   const std::vector<std::uint8_t> used = links.nodes_in_use();
   result.sub_patches = static_cast<std::uint64_t>(std::ranges::count(used, 1));
 

@@ -16,8 +16,9 @@ struct HierarchicalSolution {
   SceneSolution solution;  ///< elements: those of LinkedRadiosity; patches.iterations: sweeps of the last exchange
   LinkUpdate update;
   LinkCounts links;
-  std::uint64_t sub_patches = 0;  ///< nodes in use
-  LinkOptions options;            ///< as they were used
+  std::uint64_t sub_patches = 0;                  ///< nodes in use
+  std::uint64_t clusters = 0, cluster_links = 0;  ///< 0 without clusters
+  LinkOptions options;                            ///< as they were used
 };
 
 /// Solves the scene. moves: by object, what counts as dynamic in the counts. Closure, covered points and pairs are

@@ -1,6 +1,8 @@
 #include "src/links/link_index.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace exitance {
 
@@ -18,19 +20,28 @@ std::span<const Link> LinkIndex::between(std::uint32_t receiver, std::uint32_t s
   return {block.links.data() + first, last - first};
 }
 
-const Link* LinkIndex::find(std::uint32_t receiver, std::uint32_t source, LinkCode code) const {
-  const std::span<const Link> links = between(receiver, source);
-  const auto at = std::ranges::lower_bound(links, code, {}, &Link::code);
-  return at != links.end() && at->code == code ? &*at : nullptr;
+void LinkIndex::grow(std::size_t roots) {
+  blocks_.resize(roots);
+  changes_.resize(roots);
 }
 
 void LinkIndex::replace(std::uint32_t receiver, std::span<const Replacement> replacements) {
   Block& block = blocks_[receiver];
+  std::vector<Change>& changes = changes_[receiver];
   const bool in_place = std::ranges::all_of(replacements, [&](const Replacement& r) {
     const auto [first, last] = range(block, r.source);
     return last - first == r.links.size();
   });
   if (in_place) {
+    if (keeping_) {
+      std::vector<Change> kept;
+      for (const Replacement& r : replacements) {
+        const std::span<const Link> old = between(receiver, r.source);
+        kept.emplace_back(Replacement{r.source, {old.begin(), old.end()}});
+      }
+      changes.reserve(changes.size() + kept.size());
+      std::ranges::move(kept, std::back_inserter(changes));
+    }
     for (const Replacement& r : replacements)
       std::ranges::copy(r.links, block.links.begin() + static_cast<std::ptrdiff_t>(range(block, r.source).first));
     return;
@@ -59,13 +70,73 @@ void LinkIndex::replace(std::uint32_t receiver, std::span<const Replacement> rep
     made.links.insert(made.links.end(), r.links.begin(), r.links.end());
   }
   keep(0xffffffffu);
-  block = std::move(made);
+  std::swap(block, made);
+  if (!keeping_) return;
+  try {
+    changes.emplace_back(std::move(made));
+  } catch (...) {
+    std::swap(block, made);  // growing the list left it where it was
+    throw;
+  }
+}
+
+void LinkIndex::mark_stale(std::uint32_t receiver, std::uint32_t source) {
+  const std::size_t at = range(blocks_[receiver], source).first;
+  bool& stale = blocks_[receiver].links[at].stale;
+  if (stale) return;
+  if (keeping_) changes_[receiver].emplace_back(at);
+  stale = true;
+}
+
+std::span<Link> LinkIndex::set_energies_of(std::uint32_t receiver) {
+  std::vector<Link>& links = blocks_[receiver].links;
+  if (keeping_) {
+    std::vector<double> energies;
+    energies.reserve(links.size());
+    for (const Link& link : links) energies.push_back(link.energy);
+    changes_[receiver].emplace_back(std::move(energies));
+  }
+  return links;
+}
+
+void LinkIndex::keep_changes() {
+  keeping_ = true;
+  roots_kept_ = blocks_.size();
+}
+
+void LinkIndex::commit() noexcept {
+  for (std::vector<Change>& changes : changes_) changes.clear();
+  keeping_ = false;
+}
+
+void LinkIndex::roll_back() noexcept {
+  for (std::size_t r = 0; r < blocks_.size(); ++r) {
+    std::vector<Link>& links = blocks_[r].links;
+    for (std::size_t k = changes_[r].size(); k-- > 0;) {  // the last one first
+      Change& change = changes_[r][k];
+      if (auto* block = std::get_if<Block>(&change)) {
+        std::swap(blocks_[r], *block);
+      } else if (const auto* replaced = std::get_if<Replacement>(&change)) {
+        std::ranges::copy(replaced->links,
+                          links.begin() + static_cast<std::ptrdiff_t>(range(blocks_[r], replaced->source).first));
+      } else if (const auto* at = std::get_if<std::size_t>(&change)) {
+        links[*at].stale = false;
+      } else {
+        const auto& energies = std::get<std::vector<double>>(change);
+        for (std::size_t i = 0; i < links.size(); ++i) links[i].energy = energies[i];
+      }
+    }
+  }
+  blocks_.resize(roots_kept_);
+  changes_.resize(roots_kept_);
+  commit();
 }
 
 LinkCounts LinkIndex::count(const PatchTree& tree, std::span<const std::uint8_t> moves) const {
   LinkCounts counts;
-  counts.bytes = blocks_.capacity() * sizeof(Block);
+  counts.bytes = blocks_.capacity() * sizeof(Block) + changes_.capacity() * sizeof(std::vector<Change>);
   for (const Block& block : blocks_) {
+    counts.patch_pairs += block.pairs.size();
     counts.bytes += block.links.capacity() * sizeof(Link) + block.pairs.capacity() * sizeof(Pair);
     for (const Link& link : block.links) {
       if (link.ghost) {

@@ -1,10 +1,10 @@
 #pragma once
 // The Hierarchical Link Index: a flat record a link, found by its code (Feng et al., section 4 and Table 1).
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "src/links/patch_tree.h"
@@ -35,12 +35,20 @@ struct Link {
 };
 static_assert(sizeof(Link) <= 48);
 
+/// Two whole patches, by their roots.
+struct PatchPair {
+  std::uint32_t receiver = 0, source = 0;
+
+  friend auto operator<=>(const PatchPair&, const PatchPair&) = default;
+};
+
 /// Links by what they are. A link is active, shadow (nothing of it is seen) or ghost (refined).
 struct LinkCounts {
   std::uint64_t active = 0, shadow = 0, ghost = 0;
   /// Active and shadow links between what does not move (E-E), from or to what does (E-O), and within that (O-O).
   std::uint64_t environment = 0, mixed = 0, dynamic = 0;
-  std::uint64_t bytes = 0;  ///< of the records and of what finds them
+  std::uint64_t patch_pairs = 0;  ///< pairs of whole patches between which there are links
+  std::uint64_t bytes = 0;        ///< of the records and of what finds them
 
   std::uint64_t links() const { return active + shadow; }
 };
@@ -50,15 +58,14 @@ struct LinkCounts {
 class LinkIndex {
  public:
   /// roots: how many the tree has. Empty.
-  explicit LinkIndex(std::size_t roots = 0) : blocks_(roots) {}
+  explicit LinkIndex(std::size_t roots = 0) : blocks_(roots), changes_(roots) {}
 
   /// Makes room for roots that the tree has got.
-  void grow(std::size_t roots) { blocks_.resize(roots); }
+  void grow(std::size_t roots);
   std::size_t roots() const { return blocks_.size(); }
 
   /// All that a patch receives.
   std::span<const Link> of_receiver(std::uint32_t receiver) const { return blocks_[receiver].links; }
-  std::span<Link> of_receiver(std::uint32_t receiver) { return blocks_[receiver].links; }
 
   /// The link between two whole patches and all its descendants; empty where there is none.
   std::span<const Link> between(std::uint32_t receiver, std::uint32_t source) const;
@@ -74,16 +81,23 @@ class LinkIndex {
     }
   }
 
-  /// A link by its code; null where there is none.
-  const Link* find(std::uint32_t receiver, std::uint32_t source, LinkCode code) const;
-
   /// Puts `links`, in order and with all descendants, in place of those between two patches.
   struct Replacement {
     std::uint32_t source = 0;  ///< patch
     std::vector<Link> links;
   };
-  /// sources ascending, each once. Different receivers may be changed by different threads.
+  // Different receivers may be changed by different threads. All or nothing.
+  /// sources ascending, each once.
   void replace(std::uint32_t receiver, std::span<const Replacement> replacements);
+  /// The first of the links from a source patch is marked stale. REQUIRES: there are some.
+  void mark_stale(std::uint32_t receiver, std::uint32_t source);
+  /// All that a patch receives, of which the energies may be set.
+  std::span<Link> set_energies_of(std::uint32_t receiver);
+
+  /// From here on, what changes is kept, until all of it stays or is undone.
+  void keep_changes();
+  void commit() noexcept;
+  void roll_back() noexcept;
 
   /// moves[object]: whether it is dynamic.
   LinkCounts count(const PatchTree& tree, std::span<const std::uint8_t> moves) const;
@@ -97,9 +111,15 @@ class LinkIndex {
     std::vector<Pair> pairs;  ///< ascending
   };
 
+  /// What was in place of what changed: a block, links in it, the place of one that was not stale, all energies.
+  using Change = std::variant<Block, Replacement, std::size_t, std::vector<double>>;
+
   std::pair<std::size_t, std::size_t> range(const Block& block, std::uint32_t source) const;
 
   std::vector<Block> blocks_;
+  std::vector<std::vector<Change>> changes_;  ///< by receiver
+  bool keeping_ = false;
+  std::size_t roots_kept_ = 0;  ///< how many there were
 };
 
 }  // namespace exitance

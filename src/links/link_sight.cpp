@@ -68,7 +68,7 @@ void Obstacles::place(const EditedScene& scene, std::span<const std::uint32_t> o
 std::vector<std::uint32_t> Obstacles::items_of(std::uint32_t object) const {
   const auto facets = static_cast<std::uint32_t>(soup_.facets().size());
   std::vector<std::uint32_t> items;
-  for (std::uint32_t f = facets_[object].first; f < facets_[object].second; ++f) {
+  for (std::uint32_t f = facets_[object].first; f < facets_[object].last; ++f) {
     const std::uint32_t shell = soup_.facets()[f].shell;
     items.push_back(shell != kNone && soup_.shells()[shell].convex ? facets + shell : f);
   }

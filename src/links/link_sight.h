@@ -10,6 +10,7 @@
 #include "geometry/shaft.h"
 #include "geometry/viewpoint.h"
 #include "src/links/patch_tree.h"
+#include "src/scene/trespass.h"
 #include "src/visibility/contacts.h"
 
 namespace exitance {
@@ -31,9 +32,9 @@ class Obstacles {
   /// which several objects may close together.
   std::vector<std::uint32_t> items_of(std::uint32_t object) const;
   std::size_t objects() const { return facets_.size(); }
-  /// The object's facets, first … last − 1.
-  std::pair<std::uint32_t, std::uint32_t> facets_of(std::uint32_t object) const { return facets_[object]; }
-  /// By object, its polygons in the soup.
+  FacetRange facets_of(std::uint32_t object) const { return facets_[object]; }
+  /// By object: its facets, and its polygons in the soup.
+  std::span<const FacetRange> facets() const { return facets_; }
   std::span<const PolygonSoup::PolygonRange> polygons() const { return polygons_; }
 
  private:
@@ -41,8 +42,8 @@ class Obstacles {
 
   PolygonSoup soup_;
   Contacts contacts_;
-  std::vector<PolygonSoup::PolygonRange> polygons_;              ///< by object
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> facets_;  ///< by object
+  std::vector<PolygonSoup::PolygonRange> polygons_;  ///< by object
+  std::vector<FacetRange> facets_;                   ///< by object
 };
 
 /// What enters the shaft of a link, as far as it was asked about.

@@ -17,10 +17,9 @@
 namespace exitance {
 namespace {
 
-/// Rounds of refinement and exchange that building may take, and to what those before the last converge.
-constexpr std::uint64_t kMostRounds = 30;
 /// About what a link takes in the index.
 constexpr std::uint64_t kBytesALink = sizeof(Link) + 16;
+/// To what rounds before the last converge when links are built.
 constexpr double kWhileBuilding = 1e-3;
 constexpr double kConverged = 1e-12;
 constexpr double kShareOfArea = 1.0 / 6'000;
@@ -53,6 +52,7 @@ LinkOptions checked(LinkOptions options, const Scene& scene) {
   if (!in_range) throw std::invalid_argument("links: 0 ≤ eps1 ≤ eps2, B_eps ≥ 0, smallest_area ≥ 0, tolerance > 0");
   if (options.smallest_area == 0) options.smallest_area = kShareOfArea * total_area(scene);
   if (!(options.smallest_area > 0)) throw std::invalid_argument("no surface has an area; there is nothing to link");
+  if (options.clusters && options.mesh.patch_size == 0) options.mesh.patch_size = 2 * std::sqrt(options.smallest_area);
   return options;
 }
 
@@ -61,21 +61,16 @@ LinkOptions checked(LinkOptions options, const Scene& scene) {
 LinkedRadiosity::LinkedRadiosity(Scene scene, const LinkOptions& options)
     : options_(checked(options, scene)),
       scene_(std::move(scene)),
-      obstacles_(std::make_unique<Obstacles>(scene_)),
+      obstacles_(std::make_shared<const Obstacles>(scene_)),
       tree_(scene_, obstacles_->soup(), {options_.mesh, options_.smallest_area}),
       radiosity_(tree_, scene_),
       links_(tree_.roots().size()),
-      brightest_(largest_emission(scene_.scene())),
-      moved_(scene_.scene().objects.size()),
-      relit_(scene_.scene().objects.size()) {}
+      brightest_(largest_emission(scene_.scene())) {}
 
 LinkTask LinkedRadiosity::task(LinkScope scope) const {
   LinkTask task;
   task.tree = &tree_;
   task.now = obstacles_.get();
-  task.before = before_.get();
-  task.moved = moved_;
-  task.relit = relit_;
   task.luminance = radiosity_.luminance();
   task.eps1 = options_.eps1 * brightest_;
   task.eps2 = options_.eps2 * brightest_;
@@ -83,13 +78,16 @@ LinkTask LinkedRadiosity::task(LinkScope scope) const {
   task.points_per_edge = options_.points_per_edge;
   task.scope = scope;
   task.any_stale = any_stale_;
+  const std::uint64_t most = options_.mesh.memory_limit / kBytesALink;
+  std::uint64_t links = 0;
+  for (std::uint32_t r = 0; r < links_.roots(); ++r) links += links_.of_receiver(r).size();
+  task.most_links = most - std::min(most, links);
   return task;
 }
 
-void LinkedRadiosity::exchange(LinkUpdate& update) {
+void LinkedRadiosity::gather(LinkUpdate& update) {
   RunClock watch;
-  update.exchange = radiosity_.gather(links_, options_.tolerance);
-  set_energies(links_, tree_, radiosity_.luminance());
+  update.exchange = radiosity_.gather(links_, clusters_, options_.tolerance);
   update.seconds_exchange += watch.lap();
 }
 
@@ -97,125 +95,246 @@ LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
   RunClock whole;
   LinkUpdate update;
   links_ = LinkIndex(tree_.roots().size());
+  clusters_ = options_.clusters ? ClusterLinks(tree_, *obstacles_) : ClusterLinks();
   any_stale_ = false;
+  pending_.reset();
   radiosity_.start_over();
-  // Each link that is divided becomes four and a ghost.
-  const std::uint64_t most = options_.mesh.memory_limit / (4 * kBytesALink);
-  std::atomic<std::uint64_t> divided = 0;
   std::atomic<bool> stopped = false;
-  LinkTask refinement = task(LinkScope::refinement);
-  refinement.stop = [&] {
-    if (stopped || (stop && stop())) return stopped = true;
-    return ++divided > most;
-  };
-  while (update.rounds < kMostRounds) {
+  while (true) {
     RunClock watch;
+    LinkTask refinement = task(LinkScope::refinement);
+    refinement.stop = [&] {
+      if (!stopped && stop && stop()) stopped = true;
+      return stopped.load();
+    };
+    ClusterLinks::Refinement of_clusters;
+    if (options_.clusters) {
+      of_clusters = clusters_.refine(radiosity_.luminance(), refinement.eps2, refinement.stop);
+      refinement.new_pairs = &of_clusters.pairs;
+    }
     const LinkWork work = update_links(refinement, links_);
     update.work += work;
     update.seconds_links += watch.lap();
-    if (divided > most) {
-      throw LimitError(
-          fmt::format("links would take more than the {:.4g} MiB that they may; choose a larger threshold "
-                      "or smallest area",
-                      static_cast<double>(options_.mesh.memory_limit) / 0x1p20));
-    }
     update.stopped = stopped;
-    if (stopped || (update.rounds > 0 && work.refined == 0)) break;
+    if (stopped || (update.rounds > 0 && work.refined + of_clusters.divided == 0)) break;
+    if (update.rounds == options_.most_rounds) {
+      update.stopped = true;
+      break;
+    }
     ++update.rounds;
-    radiosity_.gather(links_, kWhileBuilding);
+    radiosity_.gather(links_, clusters_, kWhileBuilding);
     update.seconds_exchange += watch.lap();
   }
-  exchange(update);
+  gather(update);
+  set_energies(links_, tree_, radiosity_.luminance());
   update.seconds = whole.seconds();
   update.cpu_seconds = whole.cpu_seconds();
   return update;
 }
 
-LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod method) {
-  RunClock whole, watch;
-  std::ranges::fill(moved_, 0);
-  std::ranges::fill(relit_, 0);
+/// work(update): what throws leaves everything as it was.
+template <class Work>
+LinkUpdate LinkedRadiosity::all_or_nothing(const Work& work) {
+  EditedScene scene = scene_;
+  PatchTree tree = tree_;
+  NodeRadiosity radiosity = radiosity_;
+  std::optional<Pending> pending = pending_;
+  const std::shared_ptr<const Obstacles> obstacles = obstacles_;
+  const bool any_stale = any_stale_;
+  LinkUpdate update;
+  links_.keep_changes();
+  try {
+    work(update);
+  } catch (...) {
+    links_.roll_back();
+    scene_ = std::move(scene);
+    tree_ = std::move(tree);
+    radiosity_ = std::move(radiosity);
+    pending_ = std::move(pending);
+    obstacles_ = obstacles;
+    any_stale_ = any_stale;
+    throw;
+  }
+  links_.commit();
+  return update;
+}
+
+LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod method,
+                                   const LinkInterruption& interruption) {
+  if (options_.clusters && method != LinkMethod::rebuild)
+    throw std::invalid_argument("links between clusters are rebuilt after an edit, not updated");
+  RunClock whole;
+  LinkUpdate update = all_or_nothing([&](LinkUpdate& made) { change(edits, method, interruption, made); });
+  RunClock watch;
+  if (method == LinkMethod::direct || method == LinkMethod::hvt) set_energies(links_, tree_, radiosity_.luminance());
+  update.seconds_exchange += watch.lap();
+  update.seconds = whole.seconds();
+  update.cpu_seconds = whole.cpu_seconds();
+  return update;
+}
+
+LinkUpdate LinkedRadiosity::work_off(const LinkInterruption& interruption) {
+  if (!pending_) return {};
+  RunClock whole;
+  const LinkMethod method = pending_->method;
+  LinkUpdate update = all_or_nothing([&](LinkUpdate& made) {
+    RunClock watch;
+    Pending left = *pending_;
+    look_at_pairs(left, interruption, made);
+    made.seconds_links = watch.lap();
+    if (method == LinkMethod::hvt_peu) {
+      made.exchange.iterations = radiosity_.shoot(links_, options_.tolerance);
+      made.exchange.converged = made.exchange.iterations < kMostExchanges;
+      made.seconds_exchange = watch.lap();
+    } else {
+      gather(made);
+    }
+  });
+  if (method != LinkMethod::hvt_peu) set_energies(links_, tree_, radiosity_.luminance());
+  update.seconds = whole.seconds();
+  update.cpu_seconds = whole.cpu_seconds();
+  return update;
+}
+
+/// Works on pairs (all that the edit concerns where there are none yet) and keeps what is left.
+void LinkedRadiosity::look_at_pairs(Pending& pending, const LinkInterruption& interruption, LinkUpdate& update) {
+  LinkTask how = task(pending.method == LinkMethod::direct ? LinkScope::all
+                      : pending.method == LinkMethod::hvt  ? LinkScope::hierarchical
+                                                           : LinkScope::significant);
+  how.before = pending.before.get();
+  how.moved = pending.moved;
+  if (!pending.luminance.empty()) how.luminance = pending.luminance;
+  how.any_stale = pending.any_stale;
+  how.stop = interruption.stop;
+  how.order = interruption.order;
+  const bool goes_on = !pending.pairs.empty() || interruption.stop;
+  update.work += update_links(how, links_, pending.method == LinkMethod::hvt_peu ? &radiosity_ : nullptr,
+                              goes_on ? &pending.pairs : nullptr);
+  update.pairs_left = pending.pairs.size();
+  // What is left may be stale itself.
+  any_stale_ = update.work.skipped > 0 || (any_stale_ && !pending.pairs.empty());
+  if (pending.pairs.empty()) {
+    pending_.reset();
+  } else {
+    if (pending.luminance.empty()) pending.luminance.assign(how.luminance.begin(), how.luminance.end());
+    pending_ = std::move(pending);
+  }
+}
+
+/// Marks as stale what an interrupted update left. Pairs that were to get links get one that brings nothing.
+void LinkedRadiosity::mark_pending(LinkIndex& links) const {
+  std::vector<PendingPair> pairs = pending_->pairs;
+  std::ranges::sort(pairs, {}, &PendingPair::pair);
+  for (std::size_t k = 0; k < pairs.size();) {
+    const std::uint32_t receiver = pairs[k].pair.receiver;
+    std::vector<LinkIndex::Replacement> marked;
+    for (; k < pairs.size() && pairs[k].pair.receiver == receiver; ++k) {
+      const std::span<const Link> old = std::as_const(links).between(receiver, pairs[k].pair.source);
+      marked.push_back({pairs[k].pair.source, {old.begin(), old.end()}});
+      if (old.empty()) {
+        Link link;
+        link.source = tree_.root(pairs[k].pair.source).node_first;
+        link.destination = tree_.root(receiver).node_first;
+        marked.back().links.push_back(link);
+      }
+      Link& first = marked.back().links.front();
+      first.stale = true;
+      first.energy = std::max(first.energy, pairs[k].stake / tree_.node(first.destination).area);
+    }
+    links.replace(receiver, marked);
+  }
+}
+
+void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, const LinkInterruption& interruption,
+                             LinkUpdate& update) {
+  RunClock watch;
+  if (pending_) {
+    mark_pending(links_);
+    any_stale_ = true;
+    pending_.reset();
+  }
+  const std::size_t objects = scene_.scene().objects.size();
+  std::vector<std::uint8_t> moved(objects), relit(objects);
   for (const Edit& edit : edits) {
     const EditedScene::Effect effect = scene_.apply(edit);
-    moved_[edit.object] |= static_cast<std::uint8_t>(effect.geometry);
-    relit_[edit.object] |= static_cast<std::uint8_t>(effect.materials);
+    moved[edit.object] |= static_cast<std::uint8_t>(effect.geometry);
+    relit[edit.object] |= static_cast<std::uint8_t>(effect.materials);
   }
   const auto any = [](const std::vector<std::uint8_t>& of) { return std::ranges::find(of, 1) != of.end(); };
-  LinkUpdate update;
-  if (any(moved_)) {
-    before_ = std::move(obstacles_);
-    for (std::uint32_t object = 0; object < moved_.size(); ++object) {
-      if (moved_[object] == 0) continue;
-      obstacles_ = std::make_unique<Obstacles>(obstacles_ ? *obstacles_ : *before_, scene_, object);
+  std::shared_ptr<const Obstacles> before;
+  if (any(moved)) {
+    before = obstacles_;
+    for (std::uint32_t object = 0; object < objects; ++object) {
+      if (moved[object] == 0) continue;
+      obstacles_ = std::make_shared<const Obstacles>(*obstacles_, scene_, object);
       tree_.change_geometry(scene_, obstacles_->soup(), obstacles_->polygons(), object);
       radiosity_.change_geometry(scene_, object);
     }
   }
-  for (std::uint32_t object = 0; object < relit_.size(); ++object) {
-    if (relit_[object] != 0) radiosity_.change_materials(scene_, object);
+  for (std::uint32_t object = 0; object < objects; ++object) {
+    if (relit[object] != 0) radiosity_.change_materials(scene_, object);
+  }
+  if (method == LinkMethod::rebuild) {
+    const double seconds_scene = watch.lap();
+    LinkIndex links = std::move(links_);
+    ClusterLinks clusters = std::move(clusters_);
+    try {
+      update = build();
+    } catch (...) {
+      links_ = std::move(links);
+      clusters_ = std::move(clusters);
+      throw;
+    }
+    update.seconds_scene = seconds_scene;
+    return;
   }
   // What links may bring follows at once: thresholds are asked of it.
-  if (any(relit_)) set_energies(links_, tree_, radiosity_.luminance());
+  if (any(relit)) set_energies(links_, tree_, radiosity_.luminance());
   update.seconds_scene = watch.lap();
-  if (method == LinkMethod::rebuild) {
-    before_.reset();
-    std::ranges::fill(moved_, 0);
-    const double seconds_scene = update.seconds_scene;
-    update = build();
-    update.seconds_scene = seconds_scene;
-    update.seconds = whole.seconds();
-    update.cpu_seconds = whole.cpu_seconds();
-    return update;
-  }
 
   NodeRadiosity* const differences = method == LinkMethod::hvt_peu ? &radiosity_ : nullptr;
-  if (any(moved_) || any_stale_) {
-    const LinkScope scope = method == LinkMethod::direct ? LinkScope::all
-                            : method == LinkMethod::hvt  ? LinkScope::hierarchical
-                                                         : LinkScope::significant;
-    update.work += update_links(task(scope), links_, differences);
-    any_stale_ = update.work.skipped > 0;
+  if (any(moved) || any_stale_) {
+    Pending all;
+    all.method = method;
+    all.before = before;
+    all.moved = moved;
+    all.any_stale = any_stale_;
+    look_at_pairs(all, interruption, update);
   }
-  before_.reset();
   radiosity_.clear_what_is_gone();
-  if (any(relit_)) {
-    std::ranges::fill(moved_, 0);
-    update.work += update_links(task(LinkScope::materials), links_, differences);
+  if (any(relit)) {
+    LinkTask materials = task(LinkScope::materials);
+    materials.relit = relit;
+    update.work += update_links(materials, links_, differences);
   }
   update.seconds_links = watch.lap();
-  if (differences == nullptr) {
-    exchange(update);
-  } else {
-    update.exchange.iterations = radiosity_.shoot(links_, options_.tolerance);
-    // What has come had no light before the exchange.
-    const bool new_light = any(relit_) || std::ranges::any_of(edits, [](const Edit& edit) {
-                             return edit.operation == Operation::add || edit.operation == Operation::reshape;
-                           });
-    if (new_light) set_energies(links_, tree_, radiosity_.luminance());
-    // By that light links may be worth looking at that were not before.
-    if (new_light && any_stale_) {
-      std::ranges::fill(moved_, 0);
-      const LinkWork again = update_links(task(LinkScope::significant), links_, differences);
-      any_stale_ = again.skipped > 0;
-      update.work += again;
-      update.exchange.iterations += radiosity_.shoot(links_, options_.tolerance);
-    }
-    update.exchange.converged = update.exchange.iterations < kMostExchanges;
-    update.seconds_exchange = watch.lap();
+  if (differences == nullptr) return gather(update);
+
+  update.exchange.iterations = radiosity_.shoot(links_, options_.tolerance);
+  // What has come had no light before the exchange.
+  const bool new_light = any(relit) || std::ranges::any_of(edits, [](const Edit& edit) {
+                           return edit.operation == Operation::add || edit.operation == Operation::reshape;
+                         });
+  if (new_light) set_energies(links_, tree_, radiosity_.luminance());
+  // By that light links may be worth looking at that were not before.
+  if (new_light && any_stale_) {
+    const LinkWork again = update_links(task(LinkScope::significant), links_, differences);
+    any_stale_ = again.skipped > 0;
+    update.work += again;
+    update.exchange.iterations += radiosity_.shoot(links_, options_.tolerance);
   }
-  update.seconds = whole.seconds();
-  update.cpu_seconds = whole.cpu_seconds();
-  return update;
+  update.exchange.converged = update.exchange.iterations < kMostExchanges;
+  update.seconds_exchange = watch.lap();
 }
 
 std::vector<double> LinkedRadiosity::converged() const {
   LinkIndex links = links_;
+  if (pending_) mark_pending(links);
   LinkTask all = task(LinkScope::values);
-  all.before = nullptr;
-  all.moved = {};
+  all.any_stale = true;
   update_links(all, links);
   NodeRadiosity radiosity = radiosity_;
-  radiosity.gather(links, kConverged);
+  radiosity.gather(links, clusters_, kConverged);
   return {radiosity.B().begin(), radiosity.B().end()};
 }
 

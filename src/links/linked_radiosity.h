@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,11 @@ struct LinkOptions {
   /// [m²] no sub-patch is smaller, about; 0: a 6,000th of the area of all patches.
   double smallest_area = 0;
   unsigned points_per_edge = 2;  ///< squared, the points by which a sub-patch receives over a link
+  /// Whether pairs of patches get links of their own only where those of their clusters do not do (cluster_links.h).
+  /// Nothing but rebuilding follows an edit then. A mesh.patch_size of 0 then means twice the edge of the smallest
+  /// area: what enters the shafts of a floor that is one patch would be much of a large scene.
+  bool clusters = false;
+  std::uint64_t most_rounds = 30;  ///< of refinement and exchange, when links are built
   /// Of the exchange of energy: bound of B's error relative to max B; of PEU, the share of energy that may stay unshot.
   double tolerance = 1e-6;
 };
@@ -36,35 +42,51 @@ struct LinkOptions {
 /// What building or updating did and took.
 struct LinkUpdate {
   LinkWork work;
-  LinkExchange exchange;     ///< of PEU, whose iterations are rounds of shots, without bounds
-  std::uint64_t rounds = 0;  ///< of refinement and exchange, when built
-  bool stopped = false;      ///< before all links were refined that should be
-  double seconds_scene = 0;  ///< wall clock: obstacles and their indices, places of nodes
-  double seconds_links = 0;  ///< finding, testing and refining links
+  LinkExchange exchange;         ///< of PEU, whose iterations are rounds of shots, without bounds
+  std::uint64_t rounds = 0;      ///< of refinement and exchange, when built
+  bool stopped = false;          ///< before all links were refined that should be, when built
+  std::uint64_t pairs_left = 0;  ///< of patches, at whose links an interrupted update has not looked
+  double seconds_scene = 0;      ///< wall clock: obstacles and their indices, places of nodes
+  double seconds_links = 0;      ///< finding, testing and refining links
   double seconds_exchange = 0;
   double seconds = 0;      ///< in all
   double cpu_seconds = 0;  ///< in all, of all threads: what else runs on the machine counts little
+};
+
+/// When an update ends early, and what it has done by then.
+struct LinkInterruption {
+  std::function<bool()> stop;  ///< asked now and then; what has been looked at then is exchanged all the same
+  LinkOrder order = LinkOrder::importance;
 };
 
 class LinkedRadiosity {
  public:
   /// Has no links yet. Throws std::invalid_argument on options out of range, and what PatchTree throws.
   LinkedRadiosity(Scene scene, const LinkOptions& options);
+  LinkedRadiosity(const LinkedRadiosity&) = delete;  // what it has refers to its tree
+  LinkedRadiosity& operator=(const LinkedRadiosity&) = delete;
 
   const EditedScene& scene() const { return scene_; }
   const PatchTree& tree() const { return tree_; }
   const LinkIndex& links() const { return links_; }
+  const ClusterLinks& cluster_links() const { return clusters_; }
   const NodeRadiosity& radiosity() const { return radiosity_; }
   const Obstacles& obstacles() const { return *obstacles_; }
   const LinkOptions& options() const { return options_; }
 
   /// From nothing: links are refined and energy is exchanged in turn, until a round refines none: B F of none was above
-  /// eps2 then. `stop`, asked by any thread, ends the refinement early (LinkUpdate::stopped). Throws LimitError when
-  /// the links would not fit in mesh.memory_limit.
+  /// eps2 then. `stop`, asked by any thread, or most_rounds end the refinement early (LinkUpdate::stopped). Throws
+  /// LimitError when the links would not fit in mesh.memory_limit; it is to be built again then.
   LinkUpdate build(const std::function<bool()>& stop = {});
 
-  /// Edits that happen at once. Throws InvalidEdit, and has then done those before it. REQUIRES: built.
-  LinkUpdate update(std::span<const Edit> edits, LinkMethod method);
+  /// Edits that happen at once. What an interrupted update leaves keeps its links as they were, until work_off, which
+  /// leaves the links that the update would have left, or marked stale until later updates. All or nothing: throws
+  /// InvalidEdit, what PatchTree throws, and what `stop` does, LimitError when there would be too many links,
+  /// std::invalid_argument for clusters with another method than rebuild, and is then as before. REQUIRES: built.
+  LinkUpdate update(std::span<const Edit> edits, LinkMethod method, const LinkInterruption& interruption = {});
+
+  /// Goes on with what the last update left, the same way. REQUIRES: built.
+  LinkUpdate work_off(const LinkInterruption& interruption = {});
 
   /// B by node and band of the same links, with every value as the scene has it, converged to 1e-12 of max B.
   std::vector<double> converged() const;
@@ -77,18 +99,34 @@ class LinkedRadiosity {
   std::vector<std::uint32_t> elements() const;
 
  private:
+  /// What an interrupted update left, and what it went by.
+  struct Pending {
+    LinkMethod method = LinkMethod::hvt;
+    std::vector<PendingPair> pairs;
+    std::shared_ptr<const Obstacles> before;
+    std::vector<std::uint8_t> moved;
+    std::vector<double> luminance;
+    bool any_stale = false;
+  };
+
   LinkTask task(LinkScope scope) const;
-  void exchange(LinkUpdate& update);
+  template <class Work>
+  LinkUpdate all_or_nothing(const Work& work);
+  void change(std::span<const Edit> edits, LinkMethod method, const LinkInterruption& interruption, LinkUpdate& update);
+  void look_at_pairs(Pending& pending, const LinkInterruption& interruption, LinkUpdate& update);
+  void mark_pending(LinkIndex& links) const;
+  void gather(LinkUpdate& update);
 
   LinkOptions options_;
   EditedScene scene_;
-  std::unique_ptr<Obstacles> obstacles_, before_;
+  std::shared_ptr<const Obstacles> obstacles_;
   PatchTree tree_;
   NodeRadiosity radiosity_;
   LinkIndex links_;
-  double brightest_ = 0;                     ///< luminance of E
-  std::vector<std::uint8_t> moved_, relit_;  ///< by object, of the edit that is being worked on
-  bool any_stale_ = false;
+  ClusterLinks clusters_;
+  double brightest_ = 0;    ///< luminance of E
+  bool any_stale_ = false;  ///< whether some link may be
+  std::optional<Pending> pending_;
 };
 
 /// Equation 7 over elements(). By node and band: the reference, what it was before and what it is.

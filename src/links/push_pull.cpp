@@ -43,14 +43,14 @@ double judged_form_factor(const Node& receiver, const Node& source, double form_
 }
 
 NodeRadiosity::NodeRadiosity(const PatchTree& tree, const EditedScene& scene)
-    : tree_(tree), bands_(scene.scene().bands), weights_(luminance_weights(bands_)) {
+    : tree_(&tree), bands_(scene.scene().bands), weights_(luminance_weights(bands_)) {
   fit_arrays();
   for (std::uint32_t object = 0; object < scene.scene().objects.size(); ++object) set_materials(scene, object);
   start_over();
 }
 
 void NodeRadiosity::fit_arrays() {
-  const std::size_t nodes = tree_.nodes().size(), roots = tree_.roots().size();
+  const std::size_t nodes = tree_->nodes().size(), roots = tree_->roots().size();
   for (auto* values : {&B_, &next_, &H_, &received_, &unshot_}) values->resize(nodes * bands_);
   for (auto* values : {&Y_, &row_sum_, &w_, &next_w_}) values->resize(nodes);
   for (auto* values : {&rho_, &E_}) values->resize(roots * bands_);
@@ -60,8 +60,8 @@ void NodeRadiosity::fit_arrays() {
 
 void NodeRadiosity::set_materials(const EditedScene& scene, std::uint32_t object) {
   const std::uint32_t first = scene.surfaces_of(object).first;
-  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
-    const Root& root = tree_.root(r);
+  for (std::uint32_t r = 0; r < tree_->roots().size(); ++r) {
+    const Root& root = tree_->root(r);
     if (root.object != object || !root.present) continue;
     const Material& material = scene.scene().materials[scene.scene().surfaces[first + root.surface].material];
     std::ranges::copy(material.rho, rho_.begin() + std::ptrdiff_t{r} * bands_);
@@ -70,7 +70,7 @@ void NodeRadiosity::set_materials(const EditedScene& scene, std::uint32_t object
 }
 
 void NodeRadiosity::start(std::uint32_t r) {
-  const Root& root = tree_.root(r);
+  const Root& root = tree_->root(r);
   for (std::size_t n = root.node_first; n < std::size_t{root.node_first} + root.node_count; ++n) {
     for (std::uint32_t b = 0; b < bands_; ++b) {
       B_[n * bands_ + b] = root.present ? E_[std::size_t{r} * bands_ + b] : 0;
@@ -81,8 +81,8 @@ void NodeRadiosity::start(std::uint32_t r) {
 }
 
 void NodeRadiosity::start_over() {
-  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
-    there_[r] = tree_.root(r).present;
+  for (std::uint32_t r = 0; r < tree_->roots().size(); ++r) {
+    there_[r] = tree_->root(r).present;
     start(r);
   }
 }
@@ -90,26 +90,26 @@ void NodeRadiosity::start_over() {
 void NodeRadiosity::change_geometry(const EditedScene& scene, std::uint32_t object) {
   fit_arrays();
   set_materials(scene, object);
-  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
-    if (tree_.root(r).present == (there_[r] != 0)) continue;
-    there_[r] = tree_.root(r).present;
-    if (tree_.root(r).present) start(r);
+  for (std::uint32_t r = 0; r < tree_->roots().size(); ++r) {
+    if (tree_->root(r).present == (there_[r] != 0)) continue;
+    there_[r] = tree_->root(r).present;
+    if (tree_->root(r).present) start(r);
   }
 }
 
 void NodeRadiosity::clear_what_is_gone() {
-  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
-    if (!tree_.root(r).present) start(r);
+  for (std::uint32_t r = 0; r < tree_->roots().size(); ++r) {
+    if (!tree_->root(r).present) start(r);
   }
 }
 
 void NodeRadiosity::change_materials(const EditedScene& scene, std::uint32_t object) {
   set_materials(scene, object);
-  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
-    const Root& root = tree_.root(r);
+  for (std::uint32_t r = 0; r < tree_->roots().size(); ++r) {
+    const Root& root = tree_->root(r);
     if (root.object != object || !root.present) continue;
     for (std::uint32_t n = root.node_first; n < root.node_first + root.node_count; ++n) {
-      if (tree_.node(n).has_children()) continue;
+      if (tree_->node(n).has_children()) continue;
       for (std::uint32_t b = 0; b < bands_; ++b) {
         const std::size_t i = std::size_t{n} * bands_ + b, of_root = std::size_t{r} * bands_ + b;
         const double B = E_[of_root] + rho_[of_root] * H_[i];
@@ -125,17 +125,17 @@ void NodeRadiosity::change_materials(const EditedScene& scene, std::uint32_t obj
 
 /// Means over children, from the leaves up.
 void NodeRadiosity::pull(std::uint32_t r, std::vector<double>& values, std::size_t bands) {
-  const Root& root = tree_.root(r);
+  const Root& root = tree_->root(r);
   for (std::size_t n = std::size_t{root.node_first} + root.node_count; n-- > root.node_first;) {
-    const Node& node = tree_.nodes()[n];
+    const Node& node = tree_->nodes()[n];
     if (!node.has_children()) continue;
     double area = 0;
-    for (std::uint32_t k = 0; k < 4; ++k) area += tree_.node(node.first_child + k).area;
+    for (std::uint32_t k = 0; k < 4; ++k) area += tree_->node(node.first_child + k).area;
     for (std::size_t b = 0; b < bands; ++b) {
       double sum = 0;
       for (std::size_t k = 0; k < 4; ++k) {
         const std::size_t child = node.first_child + k;
-        sum += tree_.nodes()[child].area * values[child * bands + b];
+        sum += tree_->nodes()[child].area * values[child * bands + b];
       }
       values[n * bands + b] = sum / area;
     }
@@ -143,27 +143,31 @@ void NodeRadiosity::pull(std::uint32_t r, std::vector<double>& values, std::size
 }
 
 void NodeRadiosity::find_luminance(std::uint32_t r) {
-  const Root& root = tree_.root(r);
+  const Root& root = tree_->root(r);
   for (std::size_t n = root.node_first; n < std::size_t{root.node_first} + root.node_count; ++n) {
     Y_[n] = 0;
     for (std::uint32_t b = 0; b < bands_; ++b) Y_[n] += weights_[b] * B_[n * bands_ + b];
   }
 }
 
-LinkExchange NodeRadiosity::gather(const LinkIndex& links, double tolerance, std::uint64_t most) {
+LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& clusters, double tolerance,
+                                   std::uint64_t most) {
   struct OfRoot {
     std::vector<double> change, size;  ///< largest of each band
     double reflected = 0, w = 0;       ///< largest of what a sweep adds to w, and of w
   };
-  std::vector<OfRoot> of_root(tree_.roots().size(), {std::vector<double>(bands_), std::vector<double>(bands_), 0, 0});
+  std::vector<OfRoot> of_root(tree_->roots().size(), {std::vector<double>(bands_), std::vector<double>(bands_), 0, 0});
   std::ranges::fill(next_, 0);
   std::ranges::fill(next_w_, 0);
-  for (const Root& root : tree_.roots())
+  for (const Root& root : tree_->roots())
     std::fill_n(w_.begin() + root.node_first, root.node_count, root.present ? 1.0 : 0.0);
   bool bounding = true;  // whether w is still sought
+  // By root: what clusters bring of B, of w, and of 1.
+  std::vector<double> of_clusters, w_of_clusters, F_of_clusters;
+  if (!clusters.empty()) clusters.gather(std::vector<double>(tree_->nodes().size(), 1), 1, F_of_clusters);
 
   const auto sweep = [&](std::uint32_t r) {
-    const Root& root = tree_.root(r);
+    const Root& root = tree_->root(r);
     const std::size_t first = root.node_first, count = root.node_count, width = bands_ + 2;
     const auto rho = std::span(rho_).subspan(std::size_t{r} * bands_, bands_);
     const double largest_rho = *std::ranges::max_element(rho);
@@ -180,12 +184,17 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, double tolerance, std
       sum[bands_] += F;
       if (bounding) sum[bands_ + 1] += static_cast<long double>(F) * w_[link.source];
     }
+    if (!clusters.empty()) {
+      for (std::uint32_t b = 0; b < bands_; ++b) sums[b] += of_clusters[std::size_t{r} * bands_ + b];
+      sums[bands_] += F_of_clusters[r];
+      if (bounding) sums[bands_ + 1] += w_of_clusters[r];
+    }
     OfRoot& found = of_root[r];
     std::ranges::fill(found.change, 0);
     std::ranges::fill(found.size, 0);
     if (bounding) found.reflected = found.w = 0;
     for (std::size_t n = first; n < first + count; ++n) {
-      const Node& node = tree_.nodes()[n];
+      const Node& node = tree_->nodes()[n];
       const long double* sum = sums.data() + (n - first) * width;
       for (std::size_t k = 0; node.has_children() && k < 4; ++k) {
         for (std::size_t b = 0; b < width; ++b) sums[(node.first_child + k - first) * width + b] += sum[b];
@@ -213,12 +222,16 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, double tolerance, std
   result.factor = std::numeric_limits<double>::infinity();
   double best = result.factor;
   while (result.iterations < most) {
-    for_each_root(tree_, sweep);
+    if (!clusters.empty()) {
+      clusters.gather(B_, bands_, of_clusters);
+      if (bounding) clusters.gather(w_, 1, w_of_clusters);
+    }
+    for_each_root(*tree_, sweep);
     ++result.iterations;
     std::swap(B_, next_);
     double reflected = 0, w = 0;
     for (std::uint32_t r = 0; r < of_root.size(); ++r) {
-      if (!tree_.root(r).present) continue;
+      if (!tree_->root(r).present) continue;
       reflected = std::max(reflected, of_root[r].reflected);
       w = std::max(w, of_root[r].w);
     }
@@ -230,7 +243,7 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, double tolerance, std
     for (std::uint32_t b = 0; b < bands_; ++b) {
       double change = 0, size = 0;
       for (std::uint32_t r = 0; r < of_root.size(); ++r) {
-        if (!tree_.root(r).present) continue;
+        if (!tree_->root(r).present) continue;
         change = std::max(change, of_root[r].change[b]);
         size = std::max(size, of_root[r].size[b]);
       }
@@ -242,7 +255,7 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, double tolerance, std
     if (result.converged || (result.residual <= 16 * kRoundoff && result.residual >= best)) break;
     best = std::min(best, result.residual);
   }
-  for_each_root(tree_, [&](std::uint32_t r) { find_luminance(r); });
+  for_each_root(*tree_, [&](std::uint32_t r) { find_luminance(r); });
   std::ranges::fill(unshot_, 0);
   std::ranges::fill(received_, 0);
   std::ranges::fill(has_received_, 0);
@@ -250,7 +263,7 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, double tolerance, std
 }
 
 void NodeRadiosity::receive(std::uint32_t node, double transfer, std::uint32_t source) {
-  has_received_[tree_.node(node).root] = 1;
+  has_received_[tree_->node(node).root] = 1;
   for (std::uint32_t b = 0; b < bands_; ++b) {
     // What is unshot will come by the link as it is now.
     const std::size_t of_source = std::size_t{source} * bands_ + b;
@@ -259,26 +272,26 @@ void NodeRadiosity::receive(std::uint32_t node, double transfer, std::uint32_t s
 }
 
 std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::uint64_t most) {
-  const std::size_t roots = tree_.roots().size();
+  const std::size_t roots = tree_->roots().size();
   std::vector<double> energy(roots), unshot(roots);
   std::vector<std::uint8_t> shoots(roots);
   const auto measure = [&](std::uint32_t r) {
-    const Node& node = tree_.node(tree_.root(r).node_first);
-    energy[r] = node.area * Y_[tree_.root(r).node_first];
+    const Node& node = tree_->node(tree_->root(r).node_first);
+    energy[r] = node.area * Y_[tree_->root(r).node_first];
     double sum = 0;  // of magnitudes: what leaves receive may cancel in the mean
-    for (std::size_t n = tree_.root(r).node_first, last = n + tree_.root(r).node_count; n < last; ++n) {
-      if (tree_.nodes()[n].has_children()) continue;
+    for (std::size_t n = tree_->root(r).node_first, last = n + tree_->root(r).node_count; n < last; ++n) {
+      if (tree_->nodes()[n].has_children()) continue;
       for (std::uint32_t b = 0; b < bands_; ++b)
-        sum += tree_.nodes()[n].area * weights_[b] * std::fabs(unshot_[n * bands_ + b]);
+        sum += tree_->nodes()[n].area * weights_[b] * std::fabs(unshot_[n * bands_ + b]);
     }
     unshot[r] = sum;
   };
   const auto absorb = [&](std::uint32_t r) {
     if (has_received_[r] == 0) return;
     has_received_[r] = 0;
-    const Root& root = tree_.root(r);
+    const Root& root = tree_->root(r);
     for (std::size_t n = root.node_first, last = n + root.node_count; n < last; ++n) {
-      const Node& node = tree_.nodes()[n];
+      const Node& node = tree_->nodes()[n];
       for (std::uint32_t b = 0; b < bands_; ++b) {
         const std::size_t i = n * bands_ + b;
         const double dH = std::exchange(received_[i], 0);
@@ -299,7 +312,7 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
   };
 
   std::ranges::fill(energy, 0);
-  for_each_root(tree_, [&](std::uint32_t r) {
+  for_each_root(*tree_, [&](std::uint32_t r) {
     measure(r);
     absorb(r);
   });
@@ -307,7 +320,7 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
   for (std::uint64_t round = 0; round < most; ++round) {
     double all = 0, left = 0, largest = 0;
     for (std::uint32_t r = 0; r < roots; ++r) {
-      if (!tree_.root(r).present) continue;
+      if (!tree_->root(r).present) continue;
       all += energy[r];
       left += unshot[r];
       largest = std::max(largest, unshot[r]);
@@ -315,8 +328,8 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
     brightest = std::max(brightest, all);
     if (left <= share * brightest) return round;
     for (std::uint32_t r = 0; r < roots; ++r)
-      shoots[r] = tree_.root(r).present && unshot[r] > 0 && unshot[r] >= kShootTogether * largest;
-    for_each_root(tree_, [&](std::uint32_t r) {
+      shoots[r] = tree_->root(r).present && unshot[r] > 0 && unshot[r] >= kShootTogether * largest;
+    for_each_root(*tree_, [&](std::uint32_t r) {
       links.for_each_source(r, [&](std::uint32_t source, std::span<const Link> of_source) {
         if (shoots[source] == 0) return;
         for (const Link& link : of_source) {
@@ -328,9 +341,9 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
         }
       });
     });
-    for_each_root(tree_, [&](std::uint32_t r) {
+    for_each_root(*tree_, [&](std::uint32_t r) {
       if (shoots[r] != 0) {
-        const Root& root = tree_.root(r);
+        const Root& root = tree_->root(r);
         std::fill_n(unshot_.begin() + std::ptrdiff_t{root.node_first} * bands_, std::size_t{root.node_count} * bands_,
                     0.0);
         unshot[r] = 0;
@@ -343,7 +356,7 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
 
 void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance) {
   for_each_root(tree, [&](std::uint32_t r) {
-    const std::span<Link> of_receiver = links.of_receiver(r);
+    const std::span<Link> of_receiver = links.set_energies_of(r);
     for (std::size_t i = of_receiver.size(); i-- > 0;) {
       Link& link = of_receiver[i];
       if (!link.ghost) {

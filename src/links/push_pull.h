@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "src/links/cluster_links.h"
 #include "src/links/link_index.h"
 #include "src/links/patch_tree.h"
 #include "src/scene/scene.h"
@@ -32,6 +33,7 @@ struct LinkExchange {
 /// those of the nodes above it bring; of others the mean of the leaves, weighted by area. 0 where nothing is there.
 class NodeRadiosity {
  public:
+  /// The tree must live as long.
   NodeRadiosity(const PatchTree& tree, const EditedScene& scene);
 
   std::uint32_t bands() const { return bands_; }
@@ -54,8 +56,10 @@ class NodeRadiosity {
   void change_materials(const EditedScene& scene, std::uint32_t object);
 
   /// Sweeps over all links, each of which gathers at all patches at once (Jacobi), until the error bound is within the
-  /// tolerance, or rounding, or `most` sweeps end it. In parallel; the same bits for any number of threads.
-  LinkExchange gather(const LinkIndex& links, double tolerance, std::uint64_t most = kMostExchanges);
+  /// tolerance, or rounding, or `most` sweeps end it. In parallel; the same bits for any number of threads. What
+  /// clusters bring, patches receive evenly.
+  LinkExchange gather(const LinkIndex& links, const ClusterLinks& clusters, double tolerance,
+                      std::uint64_t most = kMostExchanges);
 
   /// [W/m²] what a link that changed brings more than before; to be pushed. Different receiving roots: any threads.
   void receive(std::uint32_t node, double transfer, std::uint32_t source);
@@ -64,7 +68,7 @@ class NodeRadiosity {
   /// at most is left or `most` rounds are done. Returns the rounds.
   std::uint64_t shoot(const LinkIndex& links, double share, std::uint64_t most = kMostExchanges);
 
-  /// H [W/m²] of a leaf, each band, and Σ F over its links and those above it: as of the last sweep.
+  /// H [W/m²] of a leaf, each band, and Σ F over its links, those above it and those of clusters: as of the last sweep.
   std::span<const double> leaf_H(std::uint32_t node) const { return {H_.data() + std::size_t{node} * bands_, bands_}; }
   double row_sum(std::uint32_t node) const { return row_sum_[node]; }
 
@@ -75,7 +79,7 @@ class NodeRadiosity {
   void pull(std::uint32_t root, std::vector<double>& values, std::size_t bands);
   void find_luminance(std::uint32_t root);
 
-  const PatchTree& tree_;
+  const PatchTree* tree_;
   std::uint32_t bands_;
   std::vector<double> weights_;
   std::vector<double> rho_, E_;                     ///< by root and band

@@ -44,7 +44,10 @@ struct Report {
     std::uint64_t sub_patches = 0;
     std::uint64_t active = 0, shadow = 0, ghost = 0;
     std::uint64_t environment = 0, mixed = 0, dynamic = 0;  ///< active and shadow: E-E, E-O and O-O
+    std::uint64_t patch_pairs = 0;                          ///< pairs of whole patches that have links
+    std::uint64_t clusters = 0, cluster_links = 0;          ///< groups of patches, and links between these
     std::uint64_t rounds = 0, bytes = 0;
+    double cpu_seconds = 0;  ///< for all links and exchange, of all threads
     double eps1 = 0, eps2 = 0, smallest_area = 0;
   };
   std::optional<Links> links;

@@ -66,6 +66,49 @@ TEST(Links, FollowTheEventsThatRedistributionFollows) {
   }
 }
 
+TEST(Links, OfGroupsSpareThoseOfPatches) {
+  const ScratchFolder scratch;
+  const std::string room = (scratch / "room.obj").string();
+  ASSERT_EQ(run("generate furnished-room --polygons 1001 --seed 1 -o " + room).code, 0);
+  const Outcome outcome = run("solve " + room + " --method hierarchical --eps 0.02 -o " + (scratch / "r").string());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto links = json_in(scratch / "r" / "result.json")["links"];
+  EXPECT_EQ(links["clusters"], 2 * json_in(scratch / "r" / "result.json")["patches"].get<int>() - 1);
+  EXPECT_GT(links["cluster_links"], 100);
+  EXPECT_LT(links["cluster_links"].get<int>() + links["patch_pairs"].get<int>(), 30 * 1001);
+}
+
+TEST(Links, UpdatesAreInterruptedAndGoOn) {
+  const ScratchFolder scratch;
+  const std::string to = (scratch / "d").string();
+  const Outcome outcome =
+      run("dynamic " + data("cube.toml") + kCoarse + "--method hvt --no-images --budget-ms 0 --work-off -o " + to);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto frames = json_in(scratch / "d" / "frames.json");
+  ASSERT_EQ(frames.size(), 5u);
+  EXPECT_GT(frames[1]["pairs_left"], 0);
+  EXPECT_GT(frames[1]["error"], 1e-4);
+  EXPECT_GT(frames[3]["pairs_left"], 0);
+  EXPECT_EQ(frames[4]["edits"][0], "work off");
+  EXPECT_EQ(frames[4]["pairs_left"], 0);
+  EXPECT_LT(frames[4]["error"], 1e-5);
+}
+
+TEST(Links, WarnOfWhatPassesThroughWalls) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "wall.toml") << "[[material]]\nname = \"m\"\nrho = 0.5\nE = 1\n"
+                                          "[[object]]\nname = \"room\"\nbox = {min = [0,0,0], max = [3,3,3]}\n"
+                                          "material = \"m\"\nflip = true\n"
+                                          "[[object]]\nname = \"cube\"\nbox = {min = [1,1,1], max = [2,2,2]}\n"
+                                          "material = \"m\"\n"
+                                          "[[event]]\ntime = 1\nobject = \"cube\"\noperation = \"move\"\n"
+                                          "translate = [1.5, 0, 0]\n";
+  const Outcome outcome = run("dynamic " + (scratch / "wall.toml").string() + " --method hvt --eps 0.5 --min-area 9 " +
+                              "--no-images -o " + (scratch / "d").string());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("wall.toml:13: object 'cube' passes through 'room'"));
+}
+
 TEST(Links, OptionsThatMeanNothingAreRefused) {
   const ScratchFolder scratch;
   const Outcome solved = run("solve " + data("furnace_cube.toml") + " --eps 0.1");
@@ -75,6 +118,13 @@ TEST(Links, OptionsThatMeanNothingAreRefused) {
   EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method scratch --b-eps 0.1" + to).code, 2);
   EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method hvt --eps 0.1 --eps1 0.2" + to).code, 2);
   EXPECT_EQ(run("solve " + data("furnace_cube.toml") + " --method hierarchical --receivers area").code, 2);
+  for (const char* option : {"--solver jacobi", "--form-factor-tolerance 1e-3", "--elements 2", "--shots 3"}) {
+    const Outcome refused = run("solve " + data("furnace_cube.toml") + " --method hierarchical " + option);
+    EXPECT_EQ(refused.code, 2) << option;
+    EXPECT_THAT(refused.err, HasSubstr(std::string(option).substr(0, std::string(option).find(' '))));
+  }
+  EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method hvt --clusters on" + to).code, 2);
+  EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method rebuild --budget-ms 1" + to).code, 2);
   std::ofstream(scratch / "bad.toml") << "[links]\neps2 = -1\n[[material]]\nname = \"m\"\nrho = 0.5\n[[object]]\n"
                                          "box = {min = [0,0,0], max = [1,1,1]}\nmaterial = \"m\"\n";
   const Outcome bad = run("solve " + (scratch / "bad.toml").string());

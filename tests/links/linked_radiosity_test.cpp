@@ -10,7 +10,7 @@
 
 #include "src/scene/input_error.h"
 #include "src/solve/scene_solution.h"
-#include "tests/links/rooms.h"
+#include "tests/links/linked_rooms.h"
 
 namespace exitance {
 namespace {
@@ -39,25 +39,6 @@ TEST(LinkedRadiosity, FurnaceComesNearTheTruthAsThresholdsFall) {
     EXPECT_LT(worst, before);
     before = worst / 2;
   }
-}
-
-bool same_bits(const LinkIndex& a, const LinkIndex& b) {
-  if (a.roots() != b.roots()) return false;
-  for (std::uint32_t r = 0; r < a.roots(); ++r) {
-    const auto x = a.of_receiver(r), y = b.of_receiver(r);
-    if (x.size() != y.size()) return false;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      const Link &l = x[k], &m = y[k];
-      if (l.code != m.code || l.source != m.source || l.destination != m.destination || l.next != m.next ||
-          l.ghost != m.ghost || l.open != m.open || l.blocked != m.blocked || l.stale != m.stale ||
-          std::memcmp(&l.form_factor, &m.form_factor, sizeof(double)) != 0 ||
-          std::memcmp(&l.visibility, &m.visibility, sizeof(double)) != 0 ||
-          std::memcmp(&l.energy, &m.energy, sizeof(double)) != 0) {
-        return false;
-      }
-    }
-  }
-  return true;
 }
 
 TEST(LinkedRadiosity, HvtLeavesWhatDirectLeavesBitForBit) {
@@ -94,27 +75,6 @@ TEST(LinkedRadiosity, HvtLeavesWhatDirectLeavesBitForBit) {
           0);
     }
   }
-}
-
-Scene room_with_things() {
-  Scene scene = empty_room();
-  add(scene, "box on the floor", box_faces({0.5, 0.6, 0}, {1.2, 1.4, 0.8}, 2, 0));
-  add(scene, "lamp", box_faces({1.8, 1.6, 1}, {2.1, 1.9, 1.2}, 3, 0));
-  add(scene, "shelf", box_faces({2.2, 0.3, 0.9}, {2.9, 1.3, 1}, 2, 0));
-  return scene;
-}
-
-LinkOptions coarse() {
-  LinkOptions options;
-  options.eps2 = 0.01;
-  options.eps1 = 0.005;
-  options.smallest_area = 0.02;
-  options.tolerance = 1e-9;
-  return options;
-}
-
-double error_of(const LinkedRadiosity& links) {
-  return link_error(links.tree(), links.elements(), 1, links.converged(), {}, links.radiosity().B()).all;
 }
 
 TEST(LinkedRadiosity, ASolidThatTwoObjectsCloseChangesWithEither) {
@@ -163,6 +123,9 @@ TEST(LinkedRadiosity, RefinementEndsWhenAskedAndWhereMemoryEnds) {
   const std::vector<std::uint8_t> moves(4);
   EXPECT_LT(part.links().count(part.tree(), moves).links(), whole.links().count(whole.tree(), moves).links());
   EXPECT_TRUE(update.exchange.converged);
+  options.most_rounds = 1;  // of several
+  LinkedRadiosity once(room_with_things(), options);
+  EXPECT_TRUE(once.build().stopped);
   options.mesh.memory_limit = 100'000;
   EXPECT_THROW(LinkedRadiosity(room_with_things(), options).build(), LimitError);
 }
@@ -222,6 +185,13 @@ TEST(LinkedRadiosity, ConvergesToGatheringAsThresholdsFall) {
   EXPECT_LT(before, 2e-3);
 }
 
+/// In O(log n), as links are in the order of their codes.
+const Link* find(const LinkIndex& links, std::uint32_t receiver, std::uint32_t source, LinkCode code) {
+  const std::span<const Link> between = links.between(receiver, source);
+  const auto at = std::ranges::lower_bound(between, code, {}, &Link::code);
+  return at != between.end() && at->code == code ? &*at : nullptr;
+}
+
 TEST(LinkedRadiosity, AnyLinkIsFoundByItsCode) {
   LinkedRadiosity links(room_with_things(), coarse());
   links.build();
@@ -233,7 +203,7 @@ TEST(LinkedRadiosity, AnyLinkIsFoundByItsCode) {
   for (std::uint32_t r = 0; r < links.links().roots(); ++r) {
     for (const Link& link : links.links().of_receiver(r)) {
       const std::uint32_t source = links.tree().node(link.source).root;
-      ASSERT_EQ(links.links().find(r, source, link.code), &link);
+      ASSERT_EQ(find(links.links(), r, source, link.code), &link);
       std::uint32_t p = links.tree().root(r).node_first, q = links.tree().root(source).node_first;
       for (unsigned k = 0; k < link.code.steps(); ++k) {
         std::uint32_t& end = link.code.end(k) == LinkCode::End::receiver ? p : q;
@@ -245,12 +215,8 @@ TEST(LinkedRadiosity, AnyLinkIsFoundByItsCode) {
     }
   }
   EXPECT_EQ(found, counts.links());
-  EXPECT_EQ(links.links().find(0, 1,
-                               LinkCode()
-                                   .descend(LinkCode::End::receiver, 0)
-                                   .descend(LinkCode::End::receiver, 0)
-                                   .descend(LinkCode::End::receiver, 0)),
-            nullptr);
+  const LinkCode below = LinkCode().descend(LinkCode::End::receiver, 0).descend(LinkCode::End::receiver, 0);
+  EXPECT_EQ(find(links.links(), 0, 1, below.descend(LinkCode::End::receiver, 0)), nullptr);
 }
 
 TEST(LinkedRadiosity, MaterialsTouchNoVisibilityButOfLinksThatAreRefined) {

@@ -1,0 +1,325 @@
+#include "src/links/pair_update.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "src/links/push_pull.h"
+
+namespace exitance {
+
+using End = LinkCode::End;
+
+PairUpdate::PairUpdate(const LinkTask& task, const ChangedObjects& now, const ChangedObjects* before,
+                       const RootShadows* shadows)
+    : task_(task),
+      tree_(*task.tree),
+      changed_now_(now),
+      changed_before_(before),
+      shadows_(shadows),
+      sight_(tree_, *task.now, task.points_per_edge) {
+  if (before != nullptr) sight_before_.emplace(tree_, *task.before, task.points_per_edge);
+}
+
+LinkWork PairUpdate::work() const {
+  LinkWork work = work_;
+  work.sight += sight_.work();
+  if (sight_before_) work.sight += sight_before_->work();
+  return work;
+}
+
+bool PairUpdate::face_each_other(const Ends& ends) const {
+  return exitance::face_each_other(tree_.node(ends.receiver), tree_.node(ends.source), task_.now->soup());
+}
+
+double PairUpdate::energy(const Ends& ends, double form_factor) const {
+  return task_.luminance[ends.source] *
+         judged_form_factor(tree_.node(ends.receiver), tree_.node(ends.source), form_factor);
+}
+
+bool PairUpdate::wants_refinement(const Ends& ends, LinkCode code, double energy, bool blocked) const {
+  return !blocked && energy > task_.eps2 && divided_end(ends, code).has_value();
+}
+
+/// Whether it is to be done, too.
+bool PairUpdate::divides(const Ends& ends, LinkCode code, double energy, bool blocked) const {
+  return wants_refinement(ends, code, energy, blocked) &&
+         !(task_.scope == LinkScope::refinement && task_.stop && task_.stop());
+}
+
+/// The larger end, unless it has no children and the other has.
+std::optional<End> PairUpdate::divided_end(const Ends& ends, LinkCode code) const {
+  if (code.steps() == LinkCode::kMostSteps) return std::nullopt;
+  const Node &to = tree_.node(ends.receiver), &from = tree_.node(ends.source);
+  if (!to.has_children() && !from.has_children()) return std::nullopt;
+  if (!to.has_children()) return End::source;
+  if (!from.has_children()) return End::receiver;
+  return to.area >= from.area ? End::receiver : End::source;
+}
+
+PairUpdate::Ends PairUpdate::child(const Ends& ends, End end, unsigned k) const {
+  if (end == End::receiver) return {tree_.node(ends.receiver).first_child + k, ends.source};
+  return {ends.receiver, tree_.node(ends.source).first_child + k};
+}
+
+/// Whether refinement, or un-refinement where that is asked, would change any of the links.
+bool PairUpdate::wants_change(std::span<const Link> links) const {
+  return std::ranges::any_of(links, [&](const Link& link) {
+    const Ends ends{link.destination, link.source};
+    const double B_F = energy(ends, link.form_factor);
+    if (link.ghost) return task_.scope == LinkScope::materials && B_F < task_.eps1;
+    return wants_refinement(ends, link.code, B_F, link.blocked);
+  });
+}
+
+bool PairUpdate::touches_changed(const Sight& sight) const {
+  return std::ranges::any_of(sight_.items(sight),
+                             [&](std::uint32_t item) { return std::ranges::binary_search(changed_now_.items, item); });
+}
+
+PairUpdate::Need PairUpdate::need(const PatchPair& pair, std::span<const Link> links) const {
+  const Root &receiver = tree_.root(pair.receiver), &source = tree_.root(pair.source);
+  if (!receiver.present || !source.present || pair.receiver == pair.source)
+    return links.empty() ? Need::nothing : Need::removal;
+  const bool moved = has_moved(receiver) || has_moved(source);
+  if (links.empty()) {
+    const bool new_pair = task_.scope == LinkScope::refinement || moved;
+    return new_pair && face_each_other({receiver.node_first, source.node_first}) ? Need::work : Need::nothing;
+  }
+  if (only_refines()) {
+    if (task_.scope == LinkScope::materials && task_.relit[source.object] == 0) return Need::nothing;
+    return wants_change(links) ? Need::work : Need::nothing;
+  }
+  if (moved || tests_all()) return Need::work;
+  const bool stale = task_.any_stale && std::ranges::any_of(links, [](const Link& link) { return link.stale; });
+  if (!stale && !shadows_->may_change(pair.receiver, pair.source)) return Need::nothing;
+  return only_significant() && links.front().energy < task_.B_eps ? Need::skip : Need::work;
+}
+
+double PairUpdate::stake(const PatchPair& pair, std::span<const Link> links) const {
+  const Ends ends{tree_.root(pair.receiver).node_first, tree_.root(pair.source).node_first};
+  const double F = links.empty() ? 0 : links.front().form_factor;
+  return tree_.node(ends.receiver).area * energy(ends, F);
+}
+
+bool PairUpdate::update(const PatchPair& pair, std::span<const Link> old, std::vector<Link>& links) {
+  const Root &receiver = tree_.root(pair.receiver), &source = tree_.root(pair.source);
+  out_.clear();
+  changed_ = false;
+  if (!receiver.present || !source.present || pair.receiver == pair.source) {
+    changed_ = !old.empty();
+  } else if (old.empty()) {
+    grow_roots({receiver.node_first, source.node_first});
+    changed_ = true;
+  } else {
+    Above ends;
+    ends.renewed = !only_refines() && (has_moved(receiver) || has_moved(source));
+    visit(old, ends, true);
+  }
+  if (changed_) links.assign(out_.begin(), out_.end());
+  return changed_;
+}
+
+/// Appends to out_ what becomes of a link and its descendants.
+void PairUpdate::visit(std::span<const Link> old, const Above& above, bool root) {
+  const Link& link = old.front();
+  const Ends ends{link.destination, link.source};
+  Above here = above;
+  here.renewed = above.renewed || link.stale;
+  here.before.reset();
+  here.sight = {};
+  bool known = false;  // here.sight is; else nothing enters, or nothing needs it
+
+  const auto find_sight = [&] {
+    here.sight = root      ? sight_.between_roots(ends.receiver, ends.source)
+                 : alone() ? sight_.between_alone(ends.receiver, ends.source, above.sight)
+                           : sight_.between(ends.receiver, ends.source, above.sight);
+    known = true;
+  };
+  const auto forget = [&] {
+    if (known) sight_.forget(here.sight);
+    if (here.before) sight_before_->forget(*here.before);
+  };
+  const auto leave_stale = [&] {
+    copy(old);
+    out_[out_.size() - old.size()].stale = true;
+    changed_ = true;
+    ++work_.skipped;
+    forget();
+  };
+
+  double F = link.form_factor;
+  bool evaluate = false, may_change = false;  // its value; whether it is refined
+  if (only_refines()) {
+    if (!wants_change(old)) return above.renewed ? leave_stale() : copy(old);
+    if (here.renewed) {  // what it was left as tells nothing
+      F = sight_.form_factor(ends.receiver, ends.source);
+      evaluate = changed_ = true;
+    }
+    if (!link.open || here.renewed) find_sight();
+    may_change = true;
+  } else if (here.renewed) {
+    if (only_significant() && !above.renewed && link.energy < task_.B_eps) return leave_stale();
+    changed_ = true;
+    if (!face_each_other(ends)) return;
+    F = sight_.form_factor(ends.receiver, ends.source);
+    const double most = std::max(energy(ends, F), task_.luminance[ends.source] * link.transfer());
+    if (only_significant() && !link.ghost && most < task_.B_eps) return leave_stale();
+    find_sight();
+    here.affected = evaluate = true;
+    may_change = task_.scope != LinkScope::values;
+  } else {
+    if (only_significant() && link.energy < task_.B_eps) return leave_stale();
+    const bool blocked_above = !root && above.sight.state == Sight::State::blocked;
+    const bool has_changed = task_.before != nullptr;
+    if (has_changed && !blocked_above) {
+      here.before =
+          root || !alone()
+              ? (root ? sight_before_->between_roots(ends.receiver, ends.source, changed_before_->items)
+                      : sight_before_->between(ends.receiver, ends.source, *above.before))
+              : sight_before_->between_alone(ends.receiver, ends.source, *above.before, changed_before_->items);
+      if (here.before->state == Sight::State::blocked) here.before->state = Sight::State::partial;
+    }
+    const bool touched_before = here.before && here.before->count > 0;
+    const bool has_stale = task_.any_stale && std::ranges::any_of(old, [](const Link& l) { return l.stale; });
+    bool touched = false;
+    if (has_changed && !tests_all() && !blocked_above && !touched_before && !has_stale && !here.forced) {
+      // Most shafts are not entered by what moved: that alone is asked first.
+      if (root) {
+        const Sight of_changed = sight_.between_roots(ends.receiver, ends.source, changed_now_.items);
+        touched = of_changed.count > 0;
+        sight_.forget(of_changed);
+      } else {
+        touched = sight_.touched(ends.receiver, ends.source, above.sight, changed_now_.items);
+      }
+      if (!touched) {
+        forget();
+        return copy(old);
+      }
+    }
+    find_sight();
+    touched = has_changed && touches_changed(here.sight);
+    here.affected = blocked_above ? above.affected : touched_before || touched;
+    may_change = task_.scope != LinkScope::values && here.affected;
+    evaluate = tests_all() || here.affected;
+    if (!evaluate && !has_stale) {
+      forget();
+      return copy(old);
+    }
+    if (tests_all()) F = sight_.form_factor(ends.receiver, ends.source);
+    if (only_significant() && evaluate && !link.ghost) {
+      // What moved in can only hide, what moved away only reveal.
+      const double v = link.visibility;
+      const double most = std::max(touched || blocked_above ? v : 0, touched_before ? 1 - v : 0);
+      if (most * energy(ends, F) < task_.B_eps) return leave_stale();
+    }
+    changed_ = changed_ || evaluate;
+  }
+
+  const bool blocked = known ? here.sight.state == Sight::State::blocked : link.blocked;
+  if (!link.ghost) {
+    if (may_change && divides(ends, link.code, energy(ends, F), blocked)) {
+      changed_ = true;
+      grow(ends, link.code, here.sight);
+    } else if (evaluate) {
+      work_.links_affected += here.affected || here.renewed;
+      add_leaf(ends, link.code, F, here.sight);
+    } else {
+      copy(old);
+    }
+    return forget();
+  }
+
+  const std::size_t at = out_.size();
+  out_.push_back(evaluate ? ghost(ends, link.code, F, here.sight) : link);
+  const End end = *divided_end(ends, link.code);
+  std::size_t next = 1;
+  bool all_leaves = true;
+  for (unsigned k = 0; k < 4; ++k) {
+    const LinkCode code = link.code.descend(end, k);
+    const Ends to = child(ends, end, k);
+    const std::size_t child_at = out_.size();
+    if (next < old.size() && old[next].code == code) {
+      const std::span<const Link> of_child = old.subspan(next, old[next].next);
+      next += of_child.size();
+      visit(of_child, here, false);
+    } else if (here.renewed && face_each_other(to)) {
+      const Sight sight = sight_.between(to.receiver, to.source, here.sight);
+      grow(to, code, sight);
+      sight_.forget(sight);
+    }
+    if (out_.size() > child_at) all_leaves = all_leaves && !out_[child_at].ghost;
+  }
+  close(at);
+  if (may_change && task_.scope != LinkScope::refinement && all_leaves && energy(ends, F) < task_.eps1) {
+    out_.resize(at);
+    add_leaf(ends, link.code, F, here.sight);
+    changed_ = true;
+    ++work_.unrefined;
+  }
+  forget();
+}
+
+/// Appends the links between two patches that had none.
+void PairUpdate::grow_roots(const Ends& ends) {
+  const Sight sight = sight_.between_roots(ends.receiver, ends.source);
+  grow(ends, {}, sight);
+  sight_.forget(sight);
+}
+
+/// Appends a new link and, where its energy asks for it, what it is refined to.
+void PairUpdate::grow(const Ends& ends, LinkCode code, const Sight& sight) {
+  const double F = sight_.form_factor(ends.receiver, ends.source);
+  if (!divides(ends, code, energy(ends, F), sight.state == Sight::State::blocked)) {
+    ++work_.links_affected;
+    return add_leaf(ends, code, F, sight);
+  }
+  ++work_.refined;
+  const std::size_t at = out_.size();
+  out_.push_back(ghost(ends, code, F, sight));
+  const End end = *divided_end(ends, code);
+  for (unsigned k = 0; k < 4; ++k) {
+    const Ends to = child(ends, end, k);
+    if (!face_each_other(to)) continue;
+    const Sight of_child = sight_.between(to.receiver, to.source, sight);
+    grow(to, code.descend(end, k), of_child);
+    sight_.forget(of_child);
+  }
+  close(at);
+}
+
+/// Sets the extent and the energy of a ghost whose descendants have been appended.
+void PairUpdate::close(std::size_t at) {
+  out_[at].next = static_cast<std::uint32_t>(out_.size() - at);
+  out_[at].energy = 0;
+  for (std::size_t k = at + 1; k < out_.size(); k += out_[k].next)
+    out_[at].energy = std::max(out_[at].energy, out_[k].energy);
+}
+
+Link PairUpdate::ghost(const Ends& ends, LinkCode code, double form_factor, const Sight& sight) const {
+  Link link;
+  link.code = code;
+  link.source = ends.source;
+  link.destination = ends.receiver;
+  link.form_factor = form_factor;
+  link.visibility = 1;
+  link.ghost = true;
+  link.open = sight.state == Sight::State::open;
+  link.blocked = sight.state == Sight::State::blocked;
+  return link;
+}
+
+void PairUpdate::add_leaf(const Ends& ends, LinkCode code, double form_factor, const Sight& sight) {
+  Link link = ghost(ends, code, form_factor, sight);
+  link.ghost = false;
+  link.energy = energy(ends, form_factor);
+  if (link.blocked || form_factor == 0) {
+    link.visibility = 0;
+  } else if (!link.open) {
+    const double seen = sight_.visible_form_factor(ends.receiver, ends.source, sight);
+    link.visibility = std::min(1.0, seen / form_factor);
+  }
+  ++work_.links_updated;
+  out_.push_back(link);
+}
+
+}  // namespace exitance

@@ -1,0 +1,28 @@
+#pragma once
+// Objects where none can be in the world: through walls, or out of the scene. Both are legal geometry.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geometry/polygon_soup.h"
+#include "src/scene/edit.h"
+
+namespace exitance {
+
+/// The facets of an object, first … last − 1; empty where it is not there.
+struct FacetRange {
+  std::uint32_t first = 0, last = 0;
+};
+
+/// What is odd about where an object of the scene stands, in words; empty where nothing is:
+///  - an edge of the object passes through the interior of another object's face, or the other way round (exact;
+///    touching, edge on edge and faces in contact are in order);
+///  - all of the object lies outside of the box around all others.
+/// Nothing is said of an object that is not there. soup: of the scene; facets: in it, by object, of all that is
+/// present.
+std::vector<std::string> find_trespass(const EditedScene& scene, const PolygonSoup& soup,
+                                       std::span<const FacetRange> facets, std::uint32_t object);
+
+}  // namespace exitance

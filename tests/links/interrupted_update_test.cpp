@@ -1,0 +1,199 @@
+// Updates that end before all is done: by a limit, and go on later, or by an exception, and leave what was.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <limits>
+#include <stdexcept>
+
+#include "src/scene/input_error.h"
+#include "src/scene/scene_file.h"
+#include "tests/links/linked_rooms.h"
+
+namespace exitance {
+namespace {
+
+/// Ends after so many questions.
+LinkInterruption after(int questions, LinkOrder order = LinkOrder::importance) {
+  return {[questions]() mutable { return questions-- <= 0; }, order};
+}
+
+/// A stored scene with many patches and few links.
+struct Stored {
+  DynamicScene given =
+      read_dynamic_scene(std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / "cube.toml", Emission::exitance);
+  LinkOptions options = coarse();
+
+  Stored() {
+    options.mesh.patch_size = 1;
+    options.smallest_area = 0.1;
+    options.eps2 = 0.02;
+    options.eps1 = 0.01;
+  }
+  std::vector<Edit> edits(std::size_t event) const { return {given.events[event].edit}; }
+};
+
+TEST(InterruptedUpdate, LeavesWhenContinuedWhatTheWholeOneLeaves) {
+  const Stored stored;
+  for (const LinkMethod method : {LinkMethod::direct, LinkMethod::hvt}) {
+    LinkedRadiosity whole(stored.given.scene, stored.options), parts(stored.given.scene, stored.options);
+    whole.build();
+    parts.build();
+    for (std::size_t event = 0; event < stored.given.events.size(); ++event) {
+      SCOPED_TRACE(event);
+      const LinkUpdate all = whole.update(stored.edits(event), method);
+      EXPECT_EQ(all.pairs_left, 0u);
+      LinkUpdate part = parts.update(stored.edits(event), method, after(2));
+      EXPECT_GT(part.pairs_left, 0u);
+      EXPECT_FALSE(same_bits(whole.links(), parts.links()));
+      std::uint64_t updated = part.work.links_updated, before = part.pairs_left;
+      part = parts.work_off(after(3, LinkOrder::index));
+      EXPECT_LT(part.pairs_left, before);
+      updated += part.work.links_updated;
+      part = parts.work_off();
+      updated += part.work.links_updated;
+      EXPECT_EQ(part.pairs_left, 0u);
+      EXPECT_EQ(updated, all.work.links_updated);
+      EXPECT_EQ(parts.work_off().work.links_updated, 0u);
+      const std::span<const double> a = whole.radiosity().B(), b = parts.radiosity().B();
+      for (std::size_t k = 0; k < a.size(); ++k) ASSERT_NEAR(a[k], b[k], 1e-8);
+      // What links bring at most is as exact as B is.
+      ASSERT_EQ(whole.links().roots(), parts.links().roots());
+      for (std::uint32_t r = 0; r < whole.links().roots(); ++r) {
+        const auto x = whole.links().of_receiver(r), y = parts.links().of_receiver(r);
+        ASSERT_EQ(x.size(), y.size());
+        for (std::size_t k = 0; k < x.size(); ++k) {
+          ASSERT_EQ(x[k].code, y[k].code);
+          ASSERT_EQ(x[k].ghost, y[k].ghost);
+          ASSERT_EQ(x[k].stale, y[k].stale);
+          ASSERT_EQ(x[k].form_factor, y[k].form_factor);
+          ASSERT_EQ(x[k].visibility, y[k].visibility);
+        }
+      }
+    }
+  }
+}
+
+TEST(InterruptedUpdate, ByProgressiveEnergyUpdateComesNearTheWholeOne) {
+  Stored stored;
+  stored.options.B_eps = 0;
+  LinkedRadiosity whole(stored.given.scene, stored.options), parts(stored.given.scene, stored.options);
+  whole.build();
+  parts.build();
+  for (std::size_t event = 0; event < stored.given.events.size(); ++event) {
+    whole.update(stored.edits(event), LinkMethod::hvt_peu);
+    EXPECT_GT(parts.update(stored.edits(event), LinkMethod::hvt_peu, after(2)).pairs_left, 0u);
+    parts.work_off();
+    EXPECT_LT(error_of(parts), 1e-6);
+    const auto elements = whole.elements();
+    EXPECT_LT(
+        link_error(whole.tree(), elements, whole.radiosity().bands(), whole.radiosity().B(), {}, parts.radiosity().B())
+            .all,
+        1e-6);
+  }
+}
+
+// What is left when another edit comes is stale and found by it.
+TEST(InterruptedUpdate, IsWorkedOffByLaterUpdates) {
+  const Stored stored;
+  for (const LinkMethod method : {LinkMethod::direct, LinkMethod::hvt, LinkMethod::hvt_peu}) {
+    LinkOptions options = stored.options;
+    options.B_eps = 0;
+    LinkedRadiosity whole(stored.given.scene, options), parts(stored.given.scene, options);
+    whole.build();
+    parts.build();
+    for (std::size_t event = 0; event < stored.given.events.size(); ++event) {
+      whole.update(stored.edits(event), method);
+      const bool last = event + 1 == stored.given.events.size();
+      parts.update(stored.edits(event), method, last ? LinkInterruption{} : after(1));
+      EXPECT_EQ(error_of(parts) < 1e-6, last) << event;
+    }
+    const std::vector<std::uint8_t> moves(stored.given.scene.objects.size());
+    EXPECT_EQ(parts.links().count(parts.tree(), moves).patch_pairs,
+              whole.links().count(whole.tree(), moves).patch_pairs);
+  }
+}
+
+// The same number of links, or more, in the order of the index: what matters most is not yet done then.
+TEST(InterruptedUpdate, HasDoneTheMostImportantPart) {
+  const Stored stored;
+  LinkedRadiosity whole(stored.given.scene, stored.options);
+  whole.build();
+  const std::vector<double> before(whole.radiosity().B().begin(), whole.radiosity().B().end());
+  const std::uint64_t all = whole.update(stored.edits(0), LinkMethod::hvt).work.links_updated;
+  const auto elements = whole.elements();
+  const auto error = [&](const LinkedRadiosity& links) {
+    return link_error(whole.tree(), elements, whole.radiosity().bands(), whole.radiosity().B(), before,
+                      links.radiosity().B())
+        .all;
+  };
+  const auto interrupted = [&](int questions, LinkOrder order) {
+    auto links = std::make_unique<LinkedRadiosity>(stored.given.scene, stored.options);
+    links->build();
+    const LinkUpdate update = links->update(stored.edits(0), LinkMethod::hvt, after(questions, order));
+    return std::pair(error(*links), update.work.links_updated);
+  };
+  const auto [by_importance, links] = interrupted(6, LinkOrder::importance);
+  EXPECT_LT(links, all / 2);
+  for (int questions = 1;; ++questions) {
+    const auto [by_index, as_many] = interrupted(questions, LinkOrder::index);
+    if (as_many < links) continue;
+    EXPECT_LT(by_importance, by_index) << links << " and " << as_many << " of " << all;
+    break;
+  }
+}
+
+/// Everything that can be seen of a solution.
+struct Seen {
+  explicit Seen(const LinkedRadiosity& of)
+      : links(of.links()), B(of.radiosity().B().begin(), of.radiosity().B().end()) {}
+
+  LinkIndex links;
+  std::vector<double> B;
+};
+
+TEST(InterruptedUpdate, ByAnExceptionLeavesWhatWas) {
+  for (const LinkMethod method : {LinkMethod::direct, LinkMethod::hvt, LinkMethod::hvt_peu, LinkMethod::rebuild}) {
+    LinkOptions options = coarse();
+    options.mesh.memory_limit = 1 << 26;
+    LinkedRadiosity links(room_with_things(), options), never_failed(room_with_things(), options);
+    links.build();
+    never_failed.build();
+    const Seen before(links);
+    const auto unchanged = [&] {
+      return same_bits(before.links, links.links()) && same_bits(before.B, links.radiosity().B()) &&
+             links.scene().is_present(2);
+    };
+    std::vector<Edit> edits{move_to(1, {0.4, 0.2, 0}), {Operation::remove, 2, {}, {}, {}}};
+    edits.push_back({Operation::change, 1, {}, {}, {{MaterialChange::kEvery, 4}}});
+
+    edits.push_back({Operation::add, 3, {}, {}, {}});  // is there
+    EXPECT_THROW(links.update(edits, method), InvalidEdit);
+    EXPECT_TRUE(unchanged());
+    edits.pop_back();
+
+    Edit vast{Operation::reshape, 3, {}, box_faces({-1e4, -1e4, -1e4}, {1e4, 1e4, 1e4}, 2, 3), {}};
+    edits.push_back(vast);  // its sub-patches have no room
+    EXPECT_THROW(links.update(edits, method), LimitError);
+    EXPECT_TRUE(unchanged());
+    edits.pop_back();
+
+    if (method != LinkMethod::rebuild) {
+      LinkInterruption failing;
+      failing.stop = [questions = 2]() mutable -> bool {
+        if (questions-- == 0) throw std::runtime_error("failed");
+        return false;
+      };
+      EXPECT_THROW(links.update(edits, method, failing), std::runtime_error);
+      EXPECT_TRUE(unchanged());
+    }
+
+    links.update(edits, method);
+    never_failed.update(edits, method);
+    EXPECT_TRUE(same_bits(links.links(), never_failed.links()));
+    EXPECT_TRUE(same_bits(links.radiosity().B(), never_failed.radiosity().B()));
+  }
+}
+
+}  // namespace
+}  // namespace exitance
