@@ -33,13 +33,6 @@ struct Named {
   std::size_t family = 0, departure = 0;
 };
 
-/// Something found wrong, before it is made small.
-struct Found {
-  std::uint64_t number = 0;
-  std::size_t contender = 0, what = 0;  ///< what: the property, or their number for the answer
-  bool threw = false;                   ///< instead of answering
-};
-
 /// What an exception says; nothing where none is thrown.
 template <class Work>
 std::optional<std::string> exception_of(const Work& work) {
@@ -70,35 +63,44 @@ class StressRun {
     }
     StressTally empty;
     empty.properties.resize(names_.size());
-    tallies_.assign(options.contenders.size() * rows_per_contender(), empty);
+    state_.tallies.assign(options.contenders.size() * rows_per_contender(), empty);
+    if (!options.resumed) return;
+    if (!fits(*options.resumed)) throw std::invalid_argument("run_stress: the state is of a run with other options");
+    state_ = *options.resumed;
   }
 
   StressReport run() {
     const auto start = Clock::now();
     constexpr std::uint64_t kBatch = 512;
     StressReport report;
-    std::uint64_t done = 0;
-    while (done < options_.count) {
+    report.resumed = state_.done;
+    auto saved = start;
+    while (state_.done < options_.count) {
       if (stopped()) {
         report.complete = false;
+        if (options_.save) options_.save(state_);
         break;
       }
-      const std::uint64_t end = std::min(options_.count, done + kBatch);
-      tbb::parallel_for(tbb::blocked_range<std::uint64_t>(done, end, 8), [&](const auto& some) {
+      const std::uint64_t end = std::min(options_.count, state_.done + kBatch);
+      tbb::parallel_for(tbb::blocked_range<std::uint64_t>(state_.done, end, 8), [&](const auto& some) {
         for (std::uint64_t k = some.begin(); k < some.end(); ++k) ask(options_.first + k);
       });
-      done = end;
+      state_.done = end;
       if (options_.progress)
-        options_.progress(static_cast<double>(done) / static_cast<double>(options_.count), "questions");
+        options_.progress(static_cast<double>(end) / static_cast<double>(options_.count), "questions");
+      if (options_.save && seconds_since(saved) >= options_.save_every) {
+        options_.save(state_);
+        saved = Clock::now();
+      }
     }
-    report.questions = done;
+    report.questions = state_.done;
     report.failures = failures();
     report.complete = report.complete && !stopped();
     for (std::size_t c = 0; c < options_.contenders.size(); ++c) {
       for (std::size_t f = 0; f < families_.size(); ++f) {
         for (std::size_t d = 0; d < departures().size(); ++d) {
           report.rows.push_back(
-              {families_[f]->name, departures()[d].name, options_.contenders[c].name, tallies_[row(c, f, d)]});
+              {families_[f]->name, departures()[d].name, options_.contenders[c].name, state_.tallies[row(c, f, d)]});
         }
       }
     }
@@ -107,6 +109,14 @@ class StressRun {
   }
 
  private:
+  bool fits(const StressState& state) const {
+    return state.done <= options_.count && state.tallies.size() == state_.tallies.size() &&
+           std::ranges::all_of(state.tallies, [&](const auto& t) { return t.properties.size() == names_.size(); }) &&
+           std::ranges::all_of(state.found, [&](const StressFinding& f) {
+             return f.number - options_.first < state.done && f.contender < options_.contenders.size() &&
+                    f.what <= names_.size();
+           });
+  }
   bool stopped() const { return options_.stop && options_.stop(); }
   std::size_t rows_per_contender() const { return families_.size() * departures().size(); }
   std::size_t row(std::size_t contender, std::size_t family, std::size_t departure) const {
@@ -144,7 +154,7 @@ class StressRun {
       const PointContender& contender = options_.contenders[c];
       StressTally tally;
       tally.properties.resize(names_.size());
-      std::vector<Found> wrong;
+      std::vector<StressFinding> wrong;
       Opinion opinion;
       const auto start = Clock::now();
       const bool answers = !exception_of([&] { opinion = contender.ask(question, seed_of(what.name)); });
@@ -175,19 +185,19 @@ class StressRun {
         }
       }
       const std::lock_guard lock(mutex_);
-      tallies_[row(c, what.family, what.departure)].add(tally);
-      found_.insert(found_.end(), wrong.begin(), wrong.end());
+      state_.tallies[row(c, what.family, what.departure)].add(tally);
+      state_.found.insert(state_.found.end(), wrong.begin(), wrong.end());
     }
   }
 
   /// The failures that are kept, small.
   std::vector<StressFailure> failures() {
-    std::ranges::sort(found_, [](const Found& a, const Found& b) {
+    std::ranges::sort(state_.found, [](const StressFinding& a, const StressFinding& b) {
       return std::tie(a.number, a.contender, a.what) < std::tie(b.number, b.contender, b.what);
     });
     std::set<std::tuple<std::size_t, std::size_t>> had;
-    std::vector<Found> kept;
-    for (const Found& f : found_) {
+    std::vector<StressFinding> kept;
+    for (const StressFinding& f : state_.found) {
       if (kept.size() == options_.failures_kept) break;
       const bool is_first = had.emplace(f.contender, named(f.number).family).second;
       if (is_first || options_.contenders[f.contender].is_proven) kept.push_back(f);
@@ -197,7 +207,7 @@ class StressRun {
     return failures;
   }
 
-  StressFailure smallest(const Found& found) const {
+  StressFailure smallest(const StressFinding& found) const {
     const Named what = named(found.number);
     const DrawnQuestion drawn_question = drawn(what);
     const PointContender& contender = options_.contenders[found.contender];
@@ -244,8 +254,7 @@ class StressRun {
   std::vector<std::string> names_;  // of properties
   std::vector<const QuestionFamily*> families_;
   std::mutex mutex_;
-  std::vector<StressTally> tallies_;
-  std::vector<Found> found_;
+  StressState state_;
 };
 
 }  // namespace
