@@ -25,7 +25,7 @@ struct CompareReport {
     std::string why_no_solution;                ///< in words; empty where there is one
     std::optional<SolutionErrors> B;            ///< against the solution by the truth, on the same patches
     std::optional<SolutionErrors> B_reference;  ///< against the reference, meshing included
-    std::optional<double> standard_error;  ///< that rays claim, in the mean
+    std::optional<double> standard_error;       ///< that rays claim, in the mean
     std::uint64_t rays = 0, queries = 0, matrix_bytes = 0, peak_memory_bytes = 0;
     double seconds = 0, cpu_seconds = 0;
   };
@@ -36,6 +36,7 @@ struct CompareReport {
   std::array<std::uint64_t, 4> pairs{};  ///< ordered, of each class
   double truth_tolerance = 0, truth_largest_error = 0, truth_seconds = 0, truth_cpu_seconds = 0;
   std::uint64_t truth_queries = 0, truth_unreached = 0;
+  std::uint64_t truth_resumed_rows = 0;  ///< that an earlier run had made; times and queries are without them
   std::optional<SolutionErrors> truth_B_reference;
   std::vector<Entry> entries;
   unsigned threads = 0;
