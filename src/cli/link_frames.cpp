@@ -31,7 +31,7 @@ class Frames {
     name_ = std::ranges::find(kMethods, options.method, [](const auto& entry) { return entry.second; })->first;
   }
 
-  LinkFrames follow() {
+  void follow() {
     const std::vector<Event>& events = given_.events;
     add(events.empty() ? 0 : std::min(0.0, events.front().time), {}, links_.build(options_.stop));
     for (std::size_t next = 0; next < events.size() && !(options_.stop && options_.stop());) {
@@ -45,7 +45,6 @@ class Frames {
       }
       add(time, names, links_.update(edits, options_.method));
     }
-    return std::move(result_);
   }
 
  private:
@@ -101,6 +100,7 @@ class Frames {
                                    error ? fmt::format("{:.3g}", error->all) : "-",
                                    error ? fmt::format("{:.3g}", error->worst_1_percent) : "-", fmt::join(edits, ", "));
     result_.frames.push_back(std::move(frame));
+    options_.finished(result_);
   }
 
   void draw(double time, const std::vector<std::uint32_t>& elements) const {
@@ -138,9 +138,8 @@ std::optional<LinkMethod> link_method_named(const std::string& name) {
   return found == kMethods.end() ? std::nullopt : std::optional(found->second);
 }
 
-LinkFrames follow_links(const DynamicScene& given, const LinkFrameOptions& options,
-                        const std::filesystem::path& folder) {
-  return Frames(given, options, folder).follow();
+void follow_links(const DynamicScene& given, const LinkFrameOptions& options, const std::filesystem::path& folder) {
+  Frames(given, options, folder).follow();
 }
 
 }  // namespace exitance

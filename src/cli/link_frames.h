@@ -15,23 +15,23 @@ namespace exitance {
 /// rebuild, direct, hvt, hvt-peu; none where there is none of that name.
 std::optional<LinkMethod> link_method_named(const std::string& name);
 
-struct LinkFrameOptions {
-  LinkOptions links;
-  LinkMethod method = LinkMethod::hvt;
-  bool references = true;          ///< whether errors are found
-  bool images = true;              ///< whether pictures and VTP files are written
-  std::uint32_t image_size = 800;  ///< of the pictures, in pixels
-  std::function<bool()> stop;      ///< asked between frames
-};
-
 struct LinkFrames {
   nlohmann::ordered_json frames;  ///< a list, as frames.json
   std::string summary;            ///< a line a frame
 };
 
+struct LinkFrameOptions {
+  LinkOptions links;
+  LinkMethod method = LinkMethod::hvt;
+  bool references = true;                           ///< whether errors are found
+  bool images = true;                               ///< whether pictures and VTP files are written
+  std::uint32_t image_size = 800;                   ///< of the pictures, in pixels
+  std::function<bool()> stop;                       ///< asked between frames
+  std::function<void(const LinkFrames&)> finished;  ///< told after each frame what there is so far
+};
+
 /// Follows the scene through its events; frame 0 is built before the first. Writes frame_*.png and frame_*.vtp into the
 /// folder. Errors are eq. 7 of George et al. (1990) against the converged solution on the same links.
-LinkFrames follow_links(const DynamicScene& given, const LinkFrameOptions& options,
-                        const std::filesystem::path& folder);
+void follow_links(const DynamicScene& given, const LinkFrameOptions& options, const std::filesystem::path& folder);
 
 }  // namespace exitance
