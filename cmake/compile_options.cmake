@@ -18,6 +18,13 @@ if(EXITANCE_SANITIZE)
                       $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   add_link_options(-fsanitize=${EXITANCE_SANITIZE})
 endif()
+option(EXITANCE_COVERAGE "Count which lines of geometry/ and src/ are run; needs GCC" OFF)
+if(EXITANCE_COVERAGE)
+  # At -O1 GCC 12 warns of Boost and Eigen without cause.
+  add_compile_options(--coverage -fprofile-update=atomic -fprofile-filter-files=^${PROJECT_SOURCE_DIR}/\(geometry|src\)/
+                      -Wno-maybe-uninitialized -Wno-uninitialized)
+  add_link_options(--coverage)
+endif()
 if(EXITANCE_SANITIZE MATCHES thread)
   include_directories(BEFORE ${PROJECT_SOURCE_DIR}/tests/tsan)  # its parallel_for says why
 endif()

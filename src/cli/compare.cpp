@@ -92,7 +92,14 @@ class Compare {
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
         ->check(whole_number_between(1, kMostThreads));
     memory_limit_.add_to(verb);
-    verb.add_option("-o,--output", file_, "File for the patches of the worst pairs (.vtp)");
+    verb.add_option("--save-every", save_every_,
+                    "Seconds of work after which finished rows of the truth are saved beside FILE")
+        ->check(number_between(0))
+        ->capture_default_str();
+    verb.add_option(
+        "-o,--output", file_,
+        "File for the patches of the worst pairs (.vtp); rows of the truth are kept in FILE.parts until then, "
+        "from where the same command goes on");
     verb.add_flag("--json", json_, "Print the report as JSON");
     verb.footer(
         "Form factors are means over patches. SAMPLER: sobol (default), owen, stratified, random. ESTIMATOR: kernel\n"
@@ -132,6 +139,7 @@ class Compare {
       runs[k].reset();
     }
     if (!file_.empty()) write_worst(subject);
+    if (checkpoint_) checkpoint_->remove();
     print_results(json_ ? to_json(report_) : printable(in_words(report_)));
   }
 
@@ -165,16 +173,26 @@ class Compare {
   void find_truth(const Subject& subject) {
     ProgressDisplay display;
     const RunClock clock;
-    const PairRun rows = run_pairs(
-        subject.exchange,
-        {.pairs = truth_, .progress = [&](double fraction, std::string_view) { display.show(fraction, "truth"); }},
-        nullptr);
-    if (!rows.complete) throw LimitError("stopped before the truth was known");
+    if (!file_.empty()) checkpoint_.emplace(file_ + ".parts", pair_run_key(report_.scene_hash, patch_size_, truth_));
+    const PairRun rows =
+        run_pairs(subject.exchange,
+                  {.pairs = truth_,
+                   .block_seconds = save_every_,
+                   .progress = [&](double fraction, std::string_view) { display.show(fraction, "truth"); }},
+                  checkpoint_ ? &*checkpoint_ : nullptr);
+    if (!rows.complete) {
+      throw LimitError(fmt::format("stopped before the truth was known; {}",
+                                   checkpoint_ ? fmt::format("{} of its {} rows are kept in {}.parts, from where the "
+                                                             "same command goes on",
+                                                             rows.finished, subject.exchange.size(), file_)
+                                               : "its rows are lost, as they are kept only with -o"));
+    }
+    report_.truth_resumed_rows = rows.resumed;
     truth_matrix_ = truth_of(rows.rows, static_cast<std::uint32_t>(subject.exchange.size()));
     report_.truth_seconds = clock.seconds();
     report_.truth_cpu_seconds = clock.cpu_seconds();
     report_.truth_queries = rows.statistics.points;
-    report_.truth_unreached = rows.statistics.unreached;
+    report_.truth_unreached = rows.unreached();
     for (const double error : truth_matrix_.F.F_error)
       report_.truth_largest_error = std::max(report_.truth_largest_error, error);
     for (const PairClass kind : truth_matrix_.kind) ++report_.pairs[static_cast<std::size_t>(kind)];
@@ -256,7 +274,7 @@ class Compare {
   std::vector<std::string> names_;
   RayOptions rays_;
   PairOptions truth_{.tolerance = 1e-10, .stop = interrupted};
-  double patch_size_ = 0;
+  double patch_size_ = 0, save_every_ = 2;
   std::size_t worst_ = 10;
   std::optional<std::size_t> threads_;
   MemoryLimit memory_limit_;
@@ -264,6 +282,7 @@ class Compare {
   bool json_ = false;
 
   std::optional<SolutionRecord> reference_record_;
+  std::optional<Checkpoint> checkpoint_;
   MatrixTruth truth_matrix_;
   SolutionRecord truth_solution_;
   CompareReport report_;

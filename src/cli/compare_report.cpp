@@ -119,10 +119,11 @@ std::string in_words(const CompareReport& r) {
     text += fmt::format("{} {} {}", k == 0 ? "" : ",", r.pairs[k], k == 0 ? "facing away" : kClasses[k]);
   }
   text += fmt::format(
-      "\n  truth: exact visibility to {:g}, errors at most {:.2g}{}; {:.3g} Mpoints, {:.3g} s of processor time\n",
+      "\n  truth: exact visibility to {:g}, errors at most {:.2g}{}; {:.3g} Mpoints, {:.3g} s of processor time{}\n",
       r.truth_tolerance, r.truth_largest_error,
       r.truth_unreached > 0 ? fmt::format(" ({} pairs did not reach it)", r.truth_unreached) : "",
-      1e-6 * static_cast<double>(r.truth_queries), r.truth_cpu_seconds);
+      1e-6 * static_cast<double>(r.truth_queries), r.truth_cpu_seconds,
+      r.truth_resumed_rows > 0 ? fmt::format(", without {} rows of an earlier run", r.truth_resumed_rows) : "");
   text += "  errors of F are absolute, of all pairs that do not face away; those of B relative (George, eq. 7)\n";
   text += table(r);
   if (!r.reference.empty()) text += against_reference(r);
@@ -147,6 +148,7 @@ std::string to_json(const CompareReport& r) {
                       {{"tolerance", r.truth_tolerance},
                        {"largest_error", number(r.truth_largest_error)},
                        {"unreached", r.truth_unreached},
+                       {"resumed_rows", r.truth_resumed_rows},
                        {"queries", r.truth_queries},
                        {"seconds", r.truth_seconds},
                        {"cpu_seconds", r.truth_cpu_seconds},

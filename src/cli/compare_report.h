@@ -36,6 +36,7 @@ struct CompareReport {
   std::array<std::uint64_t, 4> pairs{};  ///< ordered, of each class
   double truth_tolerance = 0, truth_largest_error = 0, truth_seconds = 0, truth_cpu_seconds = 0;
   std::uint64_t truth_queries = 0, truth_unreached = 0;
+  std::uint64_t truth_resumed_rows = 0;  ///< that an earlier run had made; times and queries are without them
   std::optional<SolutionErrors> truth_B_reference;
   std::vector<Entry> entries;
   unsigned threads = 0;

@@ -103,7 +103,8 @@ class Dynamic {
     verb.footer(
         "frames.json is a list: frame 0 is the scene before the first event, each other one follows the events of one\n"
         "time. error and error_worst_1_percent are eq. 7 of George et al. (1990) over elements, against the converged\n"
-        "solution of that frame; null where there is no reference. Ctrl-C saves the frames so far, exit code 4.\n"
+        "solution of that frame; null where there is no reference. Each frame is written when it is done; Ctrl-C ends with\n"
+        "those so far, exit code 4.\n"
         "Methods by links link all pairs of patches: clusters of patches are for solve --method hierarchical.");
   }
 
@@ -119,8 +120,7 @@ class Dynamic {
     for (const std::string& warning : given.scene.warnings) print_warning(warning);
     if (given.events.empty()) print_warning(fmt::format("{}: has no [[event]]; there is one frame", path_));
     read_replay();
-    ResultFolder folder(folder_);
-    draft_ = folder.draft();
+    results_.emplace(folder_);
     if (const auto by_links = link_method_named(method_)) {
       refuse_shots_only();
       LinkFrameOptions how;
@@ -137,11 +137,13 @@ class Dynamic {
       how.images = images_;
       how.image_size = image_size_;
       how.stop = [this] { return stop(); };
-      const LinkFrames frames = follow_links(given, how, draft_);
-      frames_ = frames.frames;
-      summary_ = frames.summary;
-      partial_ = partial_ || frames.unfinished;
-      return finish(folder);
+      how.finished = [this](const LinkFrames& so_far) {
+        frames_ = so_far.frames;
+        summary_ = so_far.summary;
+        keep_frames();
+      };
+      partial_ = follow_links(given, how, results_->draft()) == LinksEnd::unfinished || partial_;
+      return finish();
     }
     links_.refuse_any("rebuild, direct, hvt or hvt-peu");
     set_options(given.scene);
@@ -161,7 +163,7 @@ class Dynamic {
     }
     const double last = given.events.empty() ? 0 : given.events.back().time;
     if (work_off_ && !stop()) frame(given, session, references, last, {"work off"});
-    finish(folder);
+    finish();
   }
 
  private:
@@ -178,10 +180,15 @@ class Dynamic {
     }
   }
 
-  void finish(const ResultFolder& folder) {
-    write_whole_file(draft_ / "frames.json", [&](std::ostream& out) { out << frames_.dump(1) << '\n'; });
-    folder.publish();
+  /// Whatever happens later, the frames so far are there: first their files, then the list that names them.
+  void keep_frames() {
+    results_->publish();
+    write_whole_file(results_->draft() / "frames.json", [&](std::ostream& out) { out << frames_.dump(1) << '\n'; });
+    results_->publish();
     if (store_) store_->save();
+  }
+
+  void finish() {
     print_results(json_ ? frames_.dump(1) + '\n' : summary_);
     if (partial_) {
       print_message(fmt::format("stopped in frame {}; the partial result was saved", frames_.size() - 1));
@@ -305,12 +312,13 @@ class Dynamic {
         work.redistributions, work.propagations, error ? fmt::format("{:.3g}", error->all) : "-",
         error ? fmt::format("{:.3g}", error->worst_1_percent) : "-", fmt::format("{}", fmt::join(edits, ", ")));
     frames_.push_back(std::move(frame));
+    keep_frames();
   }
 
   void draw(const DynamicScene& given, const EditSession& session, double time, const std::vector<double>& B) const {
     const DynamicRadiosity& state = session.solution();
     const Faces faces = faces_of(state.version());
-    write_frame(draft_, given, {frames_.size(), time, faces, state.bands(), B}, [&](const Camera& camera) {
+    write_frame(results_->draft(), given, {frames_.size(), time, faces, state.bands(), B}, [&](const Camera& camera) {
       return picture(state, B, camera, {image_size_, image_size_});
     });
   }
@@ -319,8 +327,8 @@ class Dynamic {
   SessionOptions options_;
   LinkSettings links_;
   CLI::Option *patch_size_ = nullptr, *elements_ = nullptr;
-  std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", object_terms_ = "shot", replay_, reference_file_,
-                     folder_;
+  std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", object_terms_ = "shot",
+                     replay_, reference_file_, folder_;
   MemoryLimit memory_limit_;
   std::uint32_t image_size_ = 800;
   std::optional<std::uint64_t> budget_shots_;
@@ -329,7 +337,7 @@ class Dynamic {
   bool work_off_ = false, reference_ = true, images_ = true, json_ = false;
 
   Clock::time_point start_;
-  std::filesystem::path draft_;
+  std::optional<ResultFolder> results_;
   std::optional<ReferenceStore> store_;
   std::map<std::uint32_t, std::uint32_t> moved_;  // objects of this frame's edits, and the lines of the last of these
   std::vector<std::uint64_t> replayed_;

@@ -182,19 +182,10 @@ class FormFactor {
     exitance::refuse_what_does_not_fit(scene.size(), report_.estimated_bytes, report_.available_bytes);
   }
 
-  /// Everything the rows depend on.
-  std::string run_key() const {
-    const Manifest build = build_manifest();
-    return fmt::format(
-        "version {}\ncommit {}\ncompiler {}\nscene {}\npatch_size {}\ntolerance {}\nrelative {}\npoints {}\n",
-        build.version, build.commit, build.compiler, report_.scene_hash, patch_size_, pairs_.tolerance, pairs_.relative,
-        pairs_.points);
-  }
-
   PairRun compute(const Patches& patches) {
     refuse_what_does_not_fit(patches.exchange);
     const auto start = Clock::now();
-    if (!file_.empty()) checkpoint_.emplace(file_ + ".parts", run_key());
+    if (!file_.empty()) checkpoint_.emplace(file_ + ".parts", pair_run_key(report_.scene_hash, patch_size_, pairs_));
     PairRun rows;
     {
       ProgressDisplay display;
@@ -208,9 +199,7 @@ class FormFactor {
     report_.pairs = pairs_by_class(rows.rows, patches.exchange.size());
     report_.class_seconds = rows.statistics.seconds;
     report_.points = rows.statistics.points;
-    for (const PairRows& part : rows.rows)
-      report_.unreached += static_cast<std::uint64_t>(
-          std::ranges::count_if(part.mark, [](std::uint8_t mark) { return !reached_of(mark); }));
+    report_.unreached = rows.unreached();
     report_.resumed_rows = rows.resumed;
     report_.seconds.form_factors = seconds_since(start);
     return rows;

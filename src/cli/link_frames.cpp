@@ -34,11 +34,10 @@ class Frames {
     name_ = std::ranges::find(kMethods, options.method, [](const auto& entry) { return entry.second; })->first;
   }
 
-  LinkFrames follow() {
+  LinksEnd follow() {
     const std::vector<Event>& events = given_.events;
     bool left = false;  // something, by the last update
     const LinkUpdate built = links_.build(options_.stop);
-    result_.unfinished = built.stopped;
     add(events.empty() ? 0 : std::min(0.0, events.front().time), {}, built);
     for (std::size_t next = 0; next < events.size() && !(options_.stop && options_.stop());) {
       const double time = events[next].time;
@@ -61,8 +60,8 @@ class Frames {
       add(events.back().time, {"work off"}, rest);
       left = rest.pairs_left > 0;
     }
-    result_.unfinished = result_.unfinished || (left && !options_.budget);
-    return std::move(result_);
+    const bool unfinished = built.stopped || (left && !options_.budget);
+    return unfinished ? LinksEnd::unfinished : LinksEnd::finished;
   }
 
  private:
@@ -138,6 +137,7 @@ class Frames {
                                    error ? fmt::format("{:.3g}", error->all) : "-",
                                    error ? fmt::format("{:.3g}", error->worst_1_percent) : "-", fmt::join(edits, ", "));
     result_.frames.push_back(std::move(frame));
+    options_.finished(result_);
   }
 
   void draw(double time, const std::vector<std::uint32_t>& elements) const {
@@ -175,9 +175,8 @@ std::optional<LinkMethod> link_method_named(const std::string& name) {
   return found == kMethods.end() ? std::nullopt : std::optional(found->second);
 }
 
-LinkFrames follow_links(const DynamicScene& given, const LinkFrameOptions& options,
-                        const std::filesystem::path& folder) {
-  return Frames(given, options, folder).follow();
+void follow_links(const DynamicScene& given, const LinkFrameOptions& options, const std::filesystem::path& folder) {
+  Frames(given, options, folder).follow();
 }
 
 }  // namespace exitance

@@ -15,6 +15,11 @@ namespace exitance {
 /// rebuild, direct, hvt, hvt-peu; none where there is none of that name.
 std::optional<LinkMethod> link_method_named(const std::string& name);
 
+struct LinkFrames {
+  nlohmann::ordered_json frames;  ///< a list, as frames.json
+  std::string summary;            ///< a line a frame
+};
+
 struct LinkFrameOptions {
   LinkOptions links;
   LinkMethod method = LinkMethod::hvt;
@@ -26,18 +31,17 @@ struct LinkFrameOptions {
   std::uint32_t image_size = 800;  ///< of the pictures, in pixels
   std::function<bool()> stop;      ///< asked between frames; also within them where they can be interrupted
   bool interruptible = false;      ///< whether stop ends updates, too
+  std::function<void(const LinkFrames&)> finished;  ///< told after each frame what there is so far
 };
 
-struct LinkFrames {
-  nlohmann::ordered_json frames;  ///< a list, as frames.json
-  std::string summary;            ///< a line a frame
-  bool unfinished = false;        ///< building ended before all links were refined, or updates left something
+enum class LinksEnd : std::uint8_t {
+  finished,
+  unfinished  ///< building ended before all links were refined, or updates left something that no budget said
 };
 
 /// Follows the scene through its events; frame 0 is built before the first. Warns of objects that pass through others
 /// or have left the scene. Writes frame_*.png and frame_*.vtp into the
 /// folder. Errors are eq. 7 of George et al. (1990) against the converged solution on the same links.
-LinkFrames follow_links(const DynamicScene& given, const LinkFrameOptions& options,
-                        const std::filesystem::path& folder);
+LinksEnd follow_links(const DynamicScene& given, const LinkFrameOptions& options, const std::filesystem::path& folder);
 
 }  // namespace exitance

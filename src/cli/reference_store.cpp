@@ -68,7 +68,7 @@ std::optional<std::vector<double>> ReferenceStore::find(const EditSession& sessi
   return found;
 }
 
-void ReferenceStore::save() const {
+void ReferenceStore::save() {
   if (file_.empty() || !is_new_) return;
   ArchiveWriter archive(file_, kKind);
   std::vector<std::string> keys;
@@ -78,6 +78,7 @@ void ReferenceStore::save() const {
   }
   archive.write("keys", keys);
   archive.publish();
+  is_new_ = false;
 }
 
 }  // namespace exitance

@@ -25,7 +25,7 @@ class ReferenceStore {
                                           const std::function<bool()>& stop);
 
   /// Writes the file, if there is one to write and anything is new in it.
-  void save() const;
+  void save();
 
  private:
   std::filesystem::path file_;

@@ -1,9 +1,11 @@
 // exitance stress: degenerate questions by the thousand, against the oracle and against properties.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -13,6 +15,7 @@
 #include "src/cli/number_range.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/stress_report.h"
+#include "src/cli/stress_state.h"
 #include "src/cli/verbs.h"
 #include "src/output/manifest.h"
 #include "src/output/result_folder.h"
@@ -61,16 +64,20 @@ class Stress {
         ->capture_default_str();
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
         ->check(whole_number_between(1, kMostThreads));
+    verb.add_option("--save-every", options_.save_every,
+                    "Seconds after which what is known is kept in the folder, in unfinished.json")
+        ->check(number_between(0))
+        ->capture_default_str();
     verb.add_flag("--json", json_, "Print the report as JSON");
     verb.add_option("-o,--output", folder_,
                     "Folder for stress.json, stress.csv, stress.svg, and failures.json, which `cases` replays");
     verb.footer(
         lists() +
-        "Magnitudes: how far things are moved from the degenerate position, of a stage whose lengths are 1 to "
-        "16.\nOf shafts and shadows failures.json has the polygons, for `cases` to compute what they exchange; the "
-        "object of "
-        "a question of shadows is the first half of the occluders.\n"
-        "Exit code 1: an answer is wrong or a property broken, of any contender asked. What the oracle fails on "
+        "Magnitudes: how far things are moved from the degenerate position, of a stage whose lengths are 1 to 16.\n"
+        "Of shafts and shadows failures.json has the polygons, for `cases` to compute what they exchange; the object\n"
+        "of a question of shadows is the first half of the occluders.\n"
+        "With -o the same command goes on after Ctrl-C (exit code 4) or a crash, also with a larger --count.\n"
+        "Exit code 1: an answer is wrong or a property broken, of any contender asked. What the oracle fails on\n"
         "is counted as not judged.");
   }
 
@@ -84,7 +91,10 @@ class Stress {
     options_.properties = against_ != "oracle";
     options_.stop = interrupted;
     std::optional<ResultFolder> folder;
-    if (!folder_.empty()) folder.emplace(folder_);
+    if (!folder_.empty()) {
+      folder.emplace(folder_);
+      go_on();
+    }
     const StressReport report = ask();
     const StressSummary summary{report, contenders_, options_.seed, given_options(verb_)};
     if (folder) {
@@ -99,16 +109,36 @@ class Stress {
           folder->draft() / "stress.svg", report, contenders_,
           fmt::format("seed {}; exitance {} ({})", options_.seed, build.version, build.commit.substr(0, 7)));
       folder->publish();
+      if (report.complete) std::filesystem::remove(unfinished());
     }
     print_results(json_ ? to_json(summary) : printable(in_words(summary)));
     if (summary.total().wrong + summary.total().broken() > 0) throw CLI::RuntimeError(check_failed);
     if (!report.complete) {
-      print_message("stopped; what was asked until then holds");
+      print_message(folder ? "stopped; what was asked until then holds, and the same command goes on"
+                           : "stopped; what was asked until then holds");
       throw CLI::RuntimeError(limit_reached);
     }
   }
 
  private:
+  std::filesystem::path unfinished() const { return std::filesystem::path(folder_) / "unfinished.json"; }
+
+  /// Where an earlier run of the same command ended.
+  void go_on() {
+    const Manifest build = build_manifest();
+    const StressKey key{{"version", build.version},
+                        {"commit", build.commit},
+                        {"compiler", build.compiler},
+                        {"question", kind_},
+                        {"families", fmt::format("{}", fmt::join(options_.families, ","))},
+                        {"contenders", fmt::format("{}", fmt::join(contenders_, ","))},
+                        {"against", against_},
+                        {"seed", std::to_string(options_.seed)},
+                        {"first", std::to_string(options_.first)}};
+    options_.resumed = read_stress_state(unfinished(), key);
+    options_.save = [this, key](const StressState& state) { write_stress_state(unfinished(), key, state); };
+  }
+
   void add_contender(const std::string& name) {
     if (std::ranges::find(options_.contenders, name, &Contender::name) != options_.contenders.end())
       throw CLI::ValidationError("--contender", name + " is named twice");

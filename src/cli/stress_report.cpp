@@ -176,6 +176,7 @@ std::string to_json(const StressSummary& summary) {
   json["kind"] = report.kind->name;
   json["seconds"] = report.seconds;
   json["complete"] = report.complete;
+  json["resumed_questions"] = report.resumed;
   json["questions"] = report.questions;
   json["wrong"] = total.wrong;
   json["worst_value_error"] = total.worst_error;

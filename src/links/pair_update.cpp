@@ -182,7 +182,7 @@ void PairUpdate::visit(std::span<const Link> old, const Above& above, bool root)
     const bool touched_before = here.before && here.before->count > 0;
     const bool has_stale = task_.any_stale && std::ranges::any_of(old, [](const Link& l) { return l.stale; });
     bool touched = false;
-    if (has_changed && !tests_all() && !blocked_above && !touched_before && !has_stale && !here.forced) {
+    if (has_changed && !tests_all() && !blocked_above && !touched_before && !has_stale) {
       // Most shafts are not entered by what moved: that alone is asked first.
       if (root) {
         const Sight of_changed = sight_.between_roots(ends.receiver, ends.source, changed_now_.items);

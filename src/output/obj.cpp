@@ -85,7 +85,8 @@ void write_obj(const Scene& scene, const std::filesystem::path& path) {
   materials.replace_extension(".mtl");
   // The second file is published while the first stands ready, so that none comes without the other.
   write_whole_file(path, [&](std::ostream& geometry) {
-    geometry << geometry_text(scene, materials.filename().string());
+    geometry << geometry_text(scene, materials.filename().string()) << std::flush;
+    if (!geometry) return;
     write_whole_file(materials, [&](std::ostream& out) { out << materials_text(scene); });
   });
 }

@@ -6,8 +6,8 @@
 
 namespace exitance {
 
-/// Results are written into a draft folder within the folder and moved out of it, replacing earlier ones, when all are
-/// there. What is not published is removed, and so are folders that were made for nothing.
+/// Results are written into a draft folder within the folder and moved out of it, replacing earlier ones, when all that
+/// belongs together is there. What is not published is removed, and so are folders that were made for nothing.
 class ResultFolder {
  public:
   /// Makes the folder (and its parents) and the draft in it, so that a long piece of work fails at its start when its
@@ -19,8 +19,8 @@ class ResultFolder {
 
   const std::filesystem::path& draft() const { return draft_; }
 
-  /// Moves every file of the draft into the folder, in place of earlier ones and of links. Throws InputError when a
-  /// folder stands where a file is to go, before anything is moved, and when the system refuses.
+  /// Moves every file that is in the draft now into the folder, in place of earlier ones and of links. Throws
+  /// InputError when a folder stands where a file is to go, before anything is moved, and when the system refuses.
   void publish() const;
 
  private:

@@ -1,9 +1,12 @@
 #include "src/reference/pair_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <span>
 
+#include "src/output/manifest.h"
 #include "src/reference/archive.h"
 
 namespace exitance {
@@ -40,6 +43,21 @@ std::vector<PairRows> finished_rows(const Checkpoint& checkpoint) {
 }
 
 }  // namespace
+
+std::uint64_t PairRun::unreached() const {
+  std::uint64_t count = 0;
+  for (const PairRows& part : rows)
+    for (const std::uint8_t mark : part.mark) count += !reached_of(mark);
+  return count;
+}
+
+std::string pair_run_key(const std::string& scene_hash, double patch_size, const PairOptions& pairs) {
+  const Manifest build = build_manifest();
+  return fmt::format(
+      "version {}\ncommit {}\ncompiler {}\nscene {}\npatch_size {}\ntolerance {}\nrelative {}\npoints {}\n",
+      build.version, build.commit, build.compiler, scene_hash, patch_size, pairs.tolerance, pairs.relative,
+      pairs.points);
+}
 
 PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Checkpoint* checkpoint) {
   const auto n = static_cast<std::uint32_t>(scene.size());

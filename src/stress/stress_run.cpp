@@ -32,18 +32,6 @@ struct Named {
   std::size_t family = 0, departure = 0;
 };
 
-/// Something found wrong, before it is made small.
-struct Found {
-  std::uint64_t number = 0;
-  std::size_t contender = 0, what = 0;  ///< what: the property, or their number for the answer
-  bool threw = false;                   ///< instead of answering
-};
-
-struct Unjudged {
-  std::uint64_t number = 0;
-  std::string exception;
-};
-
 /// What an exception says; nothing where none is thrown.
 template <class Work>
 std::optional<std::string> exception_of(const Work& work) {
@@ -87,7 +75,10 @@ class StressRun {
     }
     StressTally empty;
     empty.properties.resize(names_.size());
-    tallies_.assign(options.contenders.size() * rows_per_contender(), empty);
+    state_.tallies.assign(options.contenders.size() * rows_per_contender(), empty);
+    if (!options.resumed) return;
+    if (!fits(*options.resumed)) throw std::invalid_argument("run_stress: the state is of a run with other options");
+    state_ = *options.resumed;
   }
 
   StressReport run() {
@@ -95,22 +86,28 @@ class StressRun {
     const std::uint64_t batch = options_.kind->of_areas ? 16 : 512;  // so that it can be stopped
     StressReport report;
     report.kind = options_.kind;
-    std::uint64_t done = 0;
-    while (done < options_.count) {
+    report.resumed = state_.done;
+    auto saved = start;
+    while (state_.done < options_.count) {
       if (stopped()) {
         report.complete = false;
+        if (options_.save) options_.save(state_);
         break;
       }
-      const std::uint64_t end = std::min(options_.count, done + batch);
-      tbb::parallel_for(tbb::blocked_range<std::uint64_t>(done, end, options_.kind->of_areas ? 1 : 8),
+      const std::uint64_t end = std::min(options_.count, state_.done + batch);
+      tbb::parallel_for(tbb::blocked_range<std::uint64_t>(state_.done, end, options_.kind->of_areas ? 1 : 8),
                         [&](const auto& some) {
                           for (std::uint64_t k = some.begin(); k < some.end(); ++k) ask(options_.first + k);
                         });
-      done = end;
+      state_.done = end;
       if (options_.progress)
-        options_.progress(static_cast<double>(done) / static_cast<double>(options_.count), "questions");
+        options_.progress(static_cast<double>(end) / static_cast<double>(options_.count), "questions");
+      if (options_.save && seconds_since(saved) >= options_.save_every) {
+        options_.save(state_);
+        saved = Clock::now();
+      }
     }
-    report.questions = done;
+    report.questions = state_.done;
     report.failures = failures();
     report.unjudged = unjudged();
     report.complete = report.complete && !stopped();
@@ -118,7 +115,7 @@ class StressRun {
       for (std::size_t f = 0; f < families_.size(); ++f) {
         for (std::size_t d = 0; d < departures().size(); ++d) {
           report.rows.push_back(
-              {families_[f]->name, departures()[d].name, options_.contenders[c].name, tallies_[row(c, f, d)]});
+              {families_[f]->name, departures()[d].name, options_.contenders[c].name, state_.tallies[row(c, f, d)]});
         }
       }
     }
@@ -127,6 +124,14 @@ class StressRun {
   }
 
  private:
+  bool fits(const StressState& state) const {
+    return state.done <= options_.count && state.tallies.size() == state_.tallies.size() &&
+           std::ranges::all_of(state.tallies, [&](const auto& t) { return t.properties.size() == names_.size(); }) &&
+           std::ranges::all_of(state.found, [&](const StressFinding& f) {
+             return f.number - options_.first < state.done && f.contender < options_.contenders.size() &&
+                    f.what <= names_.size();
+           });
+  }
   bool stopped() const { return options_.stop && options_.stop(); }
   std::size_t rows_per_contender() const { return families_.size() * departures().size(); }
   std::size_t row(std::size_t contender, std::size_t family, std::size_t departure) const {
@@ -165,14 +170,14 @@ class StressRun {
     if (options_.oracle) {
       if (const auto exception = exception_of([&] { truth = options_.kind->truth(question); })) {
         const std::lock_guard lock(mutex_);
-        unjudged_.push_back({number, *exception});
+        state_.unjudged.push_back({number, *exception});
       }
     }
     for (std::size_t c = 0; c < options_.contenders.size(); ++c) {
       const Contender& contender = options_.contenders[c];
       StressTally tally;
       tally.properties.resize(names_.size());
-      std::vector<Found> wrong;
+      std::vector<StressFinding> wrong;
       Opinion opinion;
       const auto start = Clock::now();
       const bool answers = !exception_of([&] { opinion = contender.ask(question, seed_of(what.name)); });
@@ -191,7 +196,7 @@ class StressRun {
         if (const auto exception = exception_of([&] { verdict = truth->judge(opinion); })) {
           tally.unjudged = 1;
           const std::lock_guard lock(mutex_);
-          unjudged_.push_back({number, contender.name + ": " + *exception});
+          state_.unjudged.push_back({number, contender.name + ": " + *exception});
         }
         tally.wrong = verdict.is_wrong ? 1 : 0;
         tally.worst_error = verdict.error;
@@ -209,19 +214,19 @@ class StressRun {
         }
       }
       const std::lock_guard lock(mutex_);
-      tallies_[row(c, what.family, what.departure)].add(tally);
-      found_.insert(found_.end(), wrong.begin(), wrong.end());
+      state_.tallies[row(c, what.family, what.departure)].add(tally);
+      state_.found.insert(state_.found.end(), wrong.begin(), wrong.end());
     }
   }
 
   /// The failures that are kept, small.
   std::vector<StressFailure> failures() {
-    std::ranges::sort(found_, [](const Found& a, const Found& b) {
+    std::ranges::sort(state_.found, [](const StressFinding& a, const StressFinding& b) {
       return std::tie(a.number, a.contender, a.what) < std::tie(b.number, b.contender, b.what);
     });
     std::set<std::tuple<std::size_t, std::size_t>> had;
-    std::vector<Found> kept;
-    for (const Found& f : found_) {
+    std::vector<StressFinding> kept;
+    for (const StressFinding& f : state_.found) {
       if (kept.size() == options_.failures_kept) break;
       const bool is_first = had.emplace(f.contender, named(f.number).family).second;
       if (is_first || options_.contenders[f.contender].is_proven) kept.push_back(f);
@@ -232,19 +237,20 @@ class StressRun {
   }
 
   std::vector<UnjudgedQuestion> unjudged() {
-    std::ranges::sort(unjudged_, [](const Unjudged& a, const Unjudged& b) {
+    std::vector<StressUnjudged> kept = state_.unjudged;
+    std::ranges::sort(kept, [](const StressUnjudged& a, const StressUnjudged& b) {
       return std::tie(a.number, a.exception) < std::tie(b.number, b.exception);
     });
-    if (unjudged_.size() > options_.failures_kept) unjudged_.resize(options_.failures_kept);
+    if (kept.size() > options_.failures_kept) kept.resize(options_.failures_kept);
     std::vector<UnjudgedQuestion> questions;
-    for (const Unjudged& u : unjudged_) {
+    for (const StressUnjudged& u : kept) {
       const Named what = named(u.number);
       questions.push_back({what.name + " " + drawn(what).placement, u.exception});
     }
     return questions;
   }
 
-  StressFailure smallest(const Found& found) const {
+  StressFailure smallest(const StressFinding& found) const {
     const Named what = named(found.number);
     const DrawnQuestion drawn_question = drawn(what);
     const Contender& contender = options_.contenders[found.contender];
@@ -292,9 +298,7 @@ class StressRun {
   std::vector<std::string> names_;  // of properties
   std::vector<const QuestionFamily*> families_;
   std::mutex mutex_;
-  std::vector<StressTally> tallies_;
-  std::vector<Found> found_;
-  std::vector<Unjudged> unjudged_;
+  StressState state_;
 };
 
 }  // namespace

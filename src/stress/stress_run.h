@@ -12,20 +12,6 @@
 
 namespace exitance {
 
-struct StressOptions {
-  const QuestionKind* kind = &question_kind_named("points");  ///< not null
-  std::vector<std::string> families;                          ///< empty: all
-  std::uint64_t count = 1000;  ///< of questions, spread evenly over families and departures
-  std::uint64_t first = 0;     ///< number of the first question
-  std::uint64_t seed = 1;
-  std::vector<Contender> contenders;
-  bool oracle = true;      ///< compare with the truth of the kind
-  bool properties = true;  ///< of contenders that have them, and closure of the exact one
-  std::size_t failures_kept = 1000;
-  Progress progress;
-  std::function<bool()> stop;  ///< asked between questions and tries to make failures small; true ends the run
-};
-
 /// How a property fared.
 struct PropertyTally {
   std::uint64_t tried = 0, broken = 0;
@@ -51,6 +37,44 @@ struct StressTally {
   void add(const StressTally& other);
   std::uint64_t tried() const;
   std::uint64_t broken() const;
+};
+
+/// Something found wrong, before it is made small.
+struct StressFinding {
+  std::uint64_t number = 0;             ///< of the question
+  std::size_t contender = 0, what = 0;  ///< what: the property, or their number for the answer
+  bool threw = false;                   ///< instead of answering
+};
+
+/// A question on which the oracle threw.
+struct StressUnjudged {
+  std::uint64_t number = 0;
+  std::string exception;
+};
+
+/// What a run knows so far, which is all that it needs to go on.
+struct StressState {
+  std::uint64_t done = 0;            ///< questions
+  std::vector<StressTally> tallies;  ///< by contender, family, departure
+  std::vector<StressFinding> found;
+  std::vector<StressUnjudged> unjudged;
+};
+
+struct StressOptions {
+  const QuestionKind* kind = &question_kind_named("points");  ///< not null
+  std::vector<std::string> families;                          ///< empty: all
+  std::uint64_t count = 1000;  ///< of questions, spread evenly over families and departures
+  std::uint64_t first = 0;     ///< number of the first question
+  std::uint64_t seed = 1;
+  std::vector<Contender> contenders;
+  bool oracle = true;      ///< compare with the truth of the kind
+  bool properties = true;  ///< of contenders that have them, and closure of the exact one
+  std::size_t failures_kept = 1000;
+  Progress progress;
+  std::function<bool()> stop;  ///< asked between questions and tries to make failures small; true ends the run
+  std::optional<StressState> resumed = {};       ///< of a run that differed in nothing but a smaller count
+  std::function<void(const StressState&)> save;  ///< called when it is stopped, and after each save_every seconds
+  double save_every = 5;
 };
 
 struct StressRow {
@@ -81,16 +105,18 @@ struct StressReport {
   std::vector<StressFailure> failures;     ///< in the order of the questions
   std::vector<UnjudgedQuestion> unjudged;  ///< likewise
   std::uint64_t questions = 0;
-  double seconds = 0;
-  bool complete = true;  ///< not stopped
+  std::uint64_t resumed = 0;  ///< of them, those that an earlier run had asked
+  double seconds = 0;         ///< of this run
+  bool complete = true;       ///< not stopped
 
   StressTally total(const std::string& contender) const;
 };
 
 /// The same options give the same report, times apart, for any number of threads. Of contenders that prove nothing only
 /// the first failure of each family is kept, for they have many. An exception of a contender is a failure of its own;
-/// where the oracle throws, answers are not judged. Throws std::invalid_argument on a family that there is not, naming
-/// those that there are.
+/// where the oracle throws, answers are not judged. A run that is ended and goes on gives the same report. Throws
+/// std::invalid_argument on a family that there is not, naming those that there are, and on a state that is not of a
+/// run like this one.
 StressReport run_stress(const StressOptions& options);
 
 }  // namespace exitance

@@ -3,16 +3,14 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <cmath>
+#include <functional>
 #include <numeric>
-#include <thread>
 
 #include "src/reference/matrix_file.h"
 #include "tests/cli/program.h"
+#include "tests/cli/running.h"
 
 namespace exitance {
 namespace {
@@ -306,44 +304,6 @@ TEST_F(FormFactorTest, RefusesWhatItCannotDo) {
   EXPECT_FALSE(exists(scratch / "big.h5"));
 }
 
-/// A run in the background.
-class Running {
- public:
-  explicit Running(const std::string& arguments) : child_(fork()) {
-    if (child_ != 0) return;
-    const std::string command = "exec " EXITANCE_PROGRAM " " + arguments + " >/dev/null 2>&1 </dev/null";
-    execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-    _exit(127);
-  }
-
-  /// Sends a signal as soon as so many parts of rows are saved, and returns the exit code, −1 if the signal ended it.
-  int end_after(const std::filesystem::path& checkpoint, std::size_t parts, int signal) const {
-    const auto saved = [&] {
-      std::error_code missing;
-      std::size_t count = 0;
-      for (std::filesystem::directory_iterator entry(checkpoint, missing), end; !missing && entry != end;
-           entry.increment(missing)) {
-        count += entry->path().extension() == ".h5";
-      }
-      return count;
-    };
-    int status = 0;
-    while (saved() < parts) {
-      if (waitpid(child_, &status, WNOHANG) == child_) {
-        ADD_FAILURE() << "ended by itself";
-        return 0;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    kill(child_, signal);
-    waitpid(child_, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
- private:
-  pid_t child_;
-};
-
 class ResumeTest : public FormFactorTest {
  protected:
   ResumeTest() { EXPECT_EQ(run(command("whole.h5")).code, 0); }
@@ -351,6 +311,10 @@ class ResumeTest : public FormFactorTest {
   std::string command(const std::string& file, const std::string& options = "--tolerance 1e-10") const {
     return "formfactor " + data("box_on_floor.toml") + " --patch-size 0.6 --threads 1 --save-every 0 " + options +
            " -o " + path(file);
+  }
+  /// Whether so many parts of rows are saved.
+  static std::function<bool()> saved(const std::filesystem::path& checkpoint, std::size_t parts) {
+    return [=] { return files_with(".h5", checkpoint) >= parts; };
   }
   void expect_whole(const std::string& file) const {
     EXPECT_TRUE(same_bytes(scratch / file, scratch / "whole.h5"));
@@ -360,9 +324,9 @@ class ResumeTest : public FormFactorTest {
 
 TEST_F(ResumeTest, AfterAKill) {
   const auto parts = scratch / "killed.h5.parts";
-  EXPECT_EQ(Running(command("killed.h5")).end_after(parts, 3, SIGKILL), -1);
+  EXPECT_EQ(Running(command("killed.h5")).end_when(saved(parts, 3), SIGKILL), -1);
   EXPECT_FALSE(exists(scratch / "killed.h5"));
-  EXPECT_EQ(Running(command("killed.h5")).end_after(parts, 7, SIGKILL), -1);  // and once more
+  EXPECT_EQ(Running(command("killed.h5")).end_when(saved(parts, 7), SIGKILL), -1);  // and once more
   const Outcome resumed = run(command("killed.h5", "--tolerance 1e-10 --json"));
   EXPECT_EQ(resumed.code, 0) << resumed.err;
   EXPECT_GE(nlohmann::json::parse(resumed.out).at("resumed_rows"), 7);
@@ -370,7 +334,7 @@ TEST_F(ResumeTest, AfterAKill) {
 }
 
 TEST_F(ResumeTest, AfterAnInterrupt) {
-  EXPECT_EQ(Running(command("paused.h5")).end_after(scratch / "paused.h5.parts", 1, SIGINT), 4);
+  EXPECT_EQ(Running(command("paused.h5")).end_when(saved(scratch / "paused.h5.parts", 1), SIGINT), 4);
   EXPECT_FALSE(exists(scratch / "paused.h5"));
   EXPECT_TRUE(exists(scratch / "paused.h5.parts"));
   EXPECT_EQ(run(command("paused.h5")).code, 0);
@@ -378,7 +342,7 @@ TEST_F(ResumeTest, AfterAnInterrupt) {
 }
 
 TEST_F(ResumeTest, NotFromDamagedPartsOrThoseOfAnotherRun) {
-  EXPECT_EQ(Running(command("box.h5")).end_after(scratch / "box.h5.parts", 3, SIGKILL), -1);
+  EXPECT_EQ(Running(command("box.h5")).end_when(saved(scratch / "box.h5.parts", 3), SIGKILL), -1);
   const Outcome other = run(command("box.h5", "--tolerance 1e-11"));
   EXPECT_EQ(other.code, 3);
   EXPECT_THAT(other.err, AllOf(HasSubstr("box.h5.parts/rows-000001.h5"), HasSubstr("tolerance 1e-10"),

@@ -70,5 +70,20 @@ TEST(Stress, RefusesWhatItDoesNotKnow) {
   }
 }
 
+TEST(Stress, RefusesWhatItCannotGoOnFrom) {
+  const ScratchFolder folder;
+  const auto unfinished = folder / "unfinished.json";
+  for (const char* text : {"{", "[]", R"({"key":{}})", R"({"key":{"seed":"2"},"done":0,"tallies":[],"found":[]})",
+                           R"({"key":{},"done":"all","tallies":[],"found":[]})",
+                           R"({"key":{},"done":0,"tallies":[{"questions":1}],"found":[]})"}) {
+    std::ofstream(unfinished) << text;
+    const Outcome outcome = run("stress --count 1 --family gap -o " + (folder / "").string());
+    EXPECT_EQ(outcome.code, 3) << text;
+    EXPECT_TRUE(outcome.one_line_on_stderr()) << outcome.err;
+    EXPECT_NE(outcome.err.find("unfinished.json"), std::string::npos) << outcome.err;
+    EXPECT_EQ(contents(unfinished), text);
+  }
+}
+
 }  // namespace
 }  // namespace exitance

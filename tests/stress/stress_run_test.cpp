@@ -7,6 +7,8 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 
 #include "src/stress/point_contender.h"
 #include "src/stress/verdict.h"
@@ -190,6 +192,45 @@ TEST(StressRun, RefusesAFamilyThatThereIsNot) {
     for (const QuestionFamily& family : question_families())
       EXPECT_THAT(refused.what(), testing::HasSubstr(family.name));
   }
+}
+
+TEST(StressRun, GoesOnWhereItWasEnded) {
+  StressOptions options = asking({"plain-double"}, 1100);
+  options.families = {"duplicate"};
+  options.oracle = false;
+  const StressReport whole = run_stress(options);
+  ASSERT_FALSE(whole.failures.empty());
+
+  std::optional<StressState> kept;
+  options.save = [&](const StressState& state) { kept = state; };
+  options.save_every = 0;
+  options.stop = [&] { return kept.has_value(); };
+  const StressReport ended = run_stress(options);
+  EXPECT_FALSE(ended.complete);
+  ASSERT_GT(ended.questions, 0u);
+  ASSERT_LT(ended.questions, 1100u);
+
+  options.stop = {};
+  options.resumed = kept;
+  const StressReport resumed = run_stress(options);
+  EXPECT_TRUE(resumed.complete);
+  EXPECT_EQ(resumed.resumed, ended.questions);
+  EXPECT_EQ(resumed.questions, 1100u);
+  ASSERT_EQ(resumed.rows.size(), whole.rows.size());
+  for (std::size_t k = 0; k < whole.rows.size(); ++k) {
+    EXPECT_EQ(resumed.rows[k].tally.questions, whole.rows[k].tally.questions);
+    EXPECT_EQ(resumed.rows[k].tally.broken(), whole.rows[k].tally.broken());
+    EXPECT_EQ(resumed.rows[k].tally.stages.filter, whole.rows[k].tally.stages.filter);
+  }
+  ASSERT_EQ(resumed.failures.size(), whole.failures.size());
+  for (std::size_t k = 0; k < whole.failures.size(); ++k)
+    EXPECT_EQ(resumed.failures[k].question, whole.failures[k].question);
+
+  options.count = ended.questions - 1;
+  EXPECT_THROW(run_stress(options), std::invalid_argument) << "more was asked than is wanted";
+  options.count = 1100;
+  options.families = {"duplicate", "gap"};
+  EXPECT_THROW(run_stress(options), std::invalid_argument) << "of another run";
 }
 
 }  // namespace
