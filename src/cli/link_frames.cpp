@@ -175,8 +175,8 @@ std::optional<LinkMethod> link_method_named(const std::string& name) {
   return found == kMethods.end() ? std::nullopt : std::optional(found->second);
 }
 
-void follow_links(const DynamicScene& given, const LinkFrameOptions& options, const std::filesystem::path& folder) {
-  Frames(given, options, folder).follow();
+LinksEnd follow_links(const DynamicScene& given, const LinkFrameOptions& options, const std::filesystem::path& folder) {
+  return Frames(given, options, folder).follow();
 }
 
 }  // namespace exitance

@@ -35,7 +35,7 @@ struct WorstPair {
   std::uint32_t i = 0, j = 0;
   double F = 0, truth = 0;
   double truth_error = 0;                ///< of what is taken for true
-  std::optional<double> standard_error;  ///< that is claimed of F
+  std::optional<double> standard_error = {};  ///< that is claimed of F
 };
 
 struct MatrixComparison {
