@@ -242,10 +242,10 @@ Truncation truncation_of(std::span<const double> weighted, int order) {
   }
   // The fall on the whole and that at the end: the slower one counts.
   double fall = rate(size, last, n - 1);
-  if (n > 4) fall = std::max(fall, rate(std::max(at(n - 4), at(n - 3)), last, 2));
+  if (n > 4) fall = std::max(fall, rate(std::max(at(n - 4), at(n - 3)), last, 3));
   const double trust = std::clamp((0.6 - fall) / 0.3, 0.0, 1.0);
-  const auto behind = [&](double orders) { return 30 * last * std::pow(fall, 1 + orders); };
-  return {behind(trust * static_cast<double>(n)), behind(static_cast<double>(n)), last, fall};
+  const auto behind = [&](double orders) { return last * std::pow(fall, 1 + orders); };
+  return {30 * behind(trust * static_cast<double>(n)), behind(static_cast<double>(n)), last, fall};
 }
 
 }  // namespace exitance

@@ -69,10 +69,10 @@ void gauss_points(const AreaCell& cell, int order, std::vector<WeightedPoint>& p
 inline constexpr int kHighestOrder = 16;
 
 struct Truncation {
-  double error = 0;  ///< of an analytic integrand
-  double least = 0;  ///< what it is if the coefficients go on falling as they did
-  double last = 0;   ///< size of the coefficients of highest order
-  double fall = 0;   ///< at most 1: from one order to the next
+  double error = 0;     ///< of an analytic integrand, from above
+  double expected = 0;  ///< what it is if the coefficients go on falling as they did
+  double last = 0;      ///< size of the coefficients of highest order
+  double fall = 0;      ///< at most 1: from one order to the next
 };
 
 /// What a product Gauss rule knows of its own error, from the integrand times weight at its points alone. Their

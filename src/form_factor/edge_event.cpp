@@ -210,7 +210,7 @@ std::vector<EdgeEvent> events_between(std::span<const SeenEdge> here, std::span<
 }
 
 std::vector<HiddenEvent> hidden_events(std::span<const SeenEdge> outline, std::span<const SeenEdge> edges,
-                                       const Vec3& x, const AreaCell& cell) {
+                                       const Vec3& x, const AreaCell& cell, const std::function<bool()>& stop) {
   const auto n = static_cast<std::size_t>(cell.corners);
   const auto on_side = [&](std::size_t side, double u) {
     if (side == 0) return first_side(cell, u).at;
@@ -239,31 +239,60 @@ std::vector<HiddenEvent> hidden_events(std::span<const SeenEdge> outline, std::s
   of_edges.reserve(edges.size());
   for (const SeenEdge& k : edges) of_edges.push_back(normals_of(k));
   std::vector<HiddenEvent> events;
-  for (const SeenEdge& e : outline) {
+  // Where two edges of the outline cross: an end of both, as unit vector. Edges of occluders may run either way.
+  const auto crossing_of = [](const SeenEdge& e, const SeenEdge& g) -> std::optional<Vec3> {
+    for (const Vec3& end : {e.from, e.to}) {
+      if (std::min(norm(end - g.from), norm(end - g.to)) <= kTouching) return end;
+    }
+    return {};
+  };
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const SeenEdge& e = outline[i];
     const Vectors of_e = normals_of(e);
-    for (const SeenEdge& g : outline) {
-      if (e.id == g.id || norm(e.to - g.from) > kTouching || meet(e, g)) continue;
+    for (std::size_t j = i + 1; j < outline.size(); ++j) {
+      const SeenEdge& g = outline[j];
+      if (e.id == g.id || meet(e, g)) continue;
+      const std::optional<Vec3> end = crossing_of(e, g);
+      if (!end) continue;
+      if (stop && stop()) return events;
       const Vectors of_g = normals_of(g);
       Vectors crossing;
-      for (std::size_t i = 0; i < places.size(); ++i) crossing[i] = cross(of_e[i], of_g[i]);
+      for (std::size_t p = 0; p < places.size(); ++p) crossing[p] = cross(of_e[p], of_g[p]);
       for (std::size_t k = 0; k < edges.size(); ++k) {
         if (meet(edges[k], e) || meet(edges[k], g)) continue;
-        const auto value = [&](std::size_t i) { return dot(crossing[i], of_edges[k][i]); };
+        const auto value = [&](std::size_t p) { return dot(crossing[p], of_edges[k][p]); };
         const double here = value(8);
         for (std::size_t side = 0; side < n; ++side) {
           const double f0 = here * value(2 * side), f1 = here * value(2 * side + 1),
                        f2 = here * value((2 * side + 2) % (2 * n));
           if (f0 > 0 && f2 > 0 && 4 * f1 >= f0 + f2) continue;
+          // Does the edge reach to where both cross, as seen from there?
+          const auto reaches = [&](const Vec3& at) {
+            const Vec3 d = cross(cross(e.a - at, e.b - at), cross(g.a - at, g.b - at)), to_a = edges[k].a - at,
+                       to_b = edges[k].b - at, normal = cross(to_a, to_b);
+            const double sign = dot(d, *end) < 0 ? -1 : 1;
+            return sign * dot(cross(to_a, d), normal) >= 0 && sign * dot(cross(d, to_b), normal) >= 0;
+          };
+          const auto add = [&](const Vec3& beyond) {
+            events.push_back({EdgeEvent(std::array{e, g, edges[k]}), beyond + 0.1 * kBeyond * (middle - beyond)});
+          };
+          bool crossed = false;
           for (const double u : Parabola(f0, f1, f2).roots()) {
             if (!(u > kBeyond && u < 1 - kBeyond)) continue;
-            const Vec3 at = on_side(side, u), d = cross(cross(e.a - at, e.b - at), cross(g.a - at, g.b - at)),
-                       to_a = edges[k].a - at, to_b = edges[k].b - at, normal = cross(to_a, to_b);
-            // Does the edge reach to where both cross?
-            const double sign = dot(d, e.to) < 0 ? -1 : 1;
-            if (sign * dot(cross(to_a, d), normal) < 0 || sign * dot(cross(d, to_b), normal) < 0) continue;
+            crossed = true;
+            if (!reaches(on_side(side, u))) continue;
             const double slope = -3 * f0 + 4 * f1 - f2 + 4 * u * (f0 - 2 * f1 + f2);
-            const Vec3 beyond = on_side(side, std::clamp(u - std::copysign(kBeyond, slope), 0.0, 1.0));
-            events.push_back({EdgeEvent(std::array{e, g, edges[k]}), beyond + 0.1 * kBeyond * (middle - beyond)});
+            add(on_side(side, std::clamp(u - std::copysign(kBeyond, slope), 0.0, 1.0)));
+            break;
+          }
+          // It may run beside the side from one corner to the other.
+          if (crossed || !(f1 < -kTouching * here * here)) continue;
+          const Vec3 to = places[2 * side + 1], way = to - x, half = x + 0.5 * way;
+          const double at_half = here * determinant(cross(e.a - half, e.b - half), cross(g.a - half, g.b - half),
+                                                    cross(edges[k].a - half, edges[k].b - half));
+          for (const double u : Parabola(here * here, at_half, f1).roots()) {
+            if (!(u > 0 && u < 1) || !reaches(x + u * way)) continue;
+            add(to);
             break;
           }
         }

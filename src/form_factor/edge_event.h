@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -45,8 +46,9 @@ struct HiddenEvent {
 
 /// Events that may happen within a cell although its points see one and the same outline, as seen from one of them, x:
 /// where another edge comes to where two of the outline's cross. `edges`: all that may. Found along the cell's sides.
+/// `stop`, asked before each crossing, ends the search with what it has found; may be empty.
 std::vector<HiddenEvent> hidden_events(std::span<const SeenEdge> outline, std::span<const SeenEdge> edges,
-                                       const Vec3& x, const AreaCell& cell);
+                                       const Vec3& x, const AreaCell& cell, const std::function<bool()>& stop = {});
 
 /// Cuts a cell along an event; the pieces next to it have it as a side. Nothing where the event does not cross the cell
 /// from one side to another in one arc, which is flat enough for a rule, or, of a bent cell, not beside the bent sides.

@@ -19,8 +19,6 @@ constexpr double kUnnoticed = 4e-3;
 /// Part of the difference of what a cell's points see that its integral may be wrong by when they see different
 /// outlines.
 constexpr double kMixed = 3e-2;
-/// A rule's error is no more than so many times what it differs from the one before.
-constexpr double kDifference = 3;
 /// What a cell's first rule may err by, as a share of what its corners say otherwise, and of the difference of what its
 /// points see.
 constexpr double kCorners = 0.5, kSpread = 2e-2;
@@ -186,7 +184,6 @@ void ObstructedExchange::sight_corners(Viewpoint& view, const AreaCell& shape, s
 
 void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double tolerance) {
   const bool first = cell.order == 0;
-  const double before = first ? INFINITY : cell.integral;
   cell.order = order;
   gauss_points(cell.shape, cell.order, scratch_);
   const double area = cell.shape.area();
@@ -217,12 +214,19 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
   // is seen than `greatest` within is an estimate: nothing proves it.
   cell.point_error += kRoundedCorners * kRoundoff * extent_of(cell.shape) * perimeter_of(cell.shape) * greatest;
   const Truncation truncation = truncation_of(weighted_, cell.order);
-  // The rule before erred by what the two differ; this one errs less, unless they agree by chance.
-  cell.error = std::min(truncation.error, std::max(truncation.least, kDifference * std::fabs(cell.integral - before)));
-  cell.fall = truncation.fall;
-  if (first && cell.error > 0 && cell.slowest > cell.fall) {
-    cell.error *= std::pow(cell.slowest / cell.fall, 1 + order);
-    cell.fall = cell.slowest;
+  const double slowest = ray_fall(contacts_, cell.shape);
+  if (first) {
+    cell.decay = RuleDecay(order, cell.integral, order == kScoutOrder ? 0 : truncation.expected);
+    cell.error = truncation.error;
+    cell.fall = truncation.fall;
+    if (cell.error > 0 && std::max(cell.slowest, slowest) > cell.fall) {
+      cell.error *= std::pow(std::max(cell.slowest, slowest) / cell.fall, 1 + order);
+      cell.fall = std::max(cell.slowest, slowest);
+    }
+  } else {
+    cell.decay.next(order, cell.integral, truncation.fall, slowest);
+    cell.error = cell.decay.error();
+    cell.fall = cell.decay.fall();
   }
   if (order == kScoutOrder) {
     sightings_.clear();
@@ -248,8 +252,8 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
     }
   }
   if (order > kScoutOrder && !cell.looked && compare && !cell.mixed && outline != 0) {
-    cell.looked = true;
-    find_hidden_events(view, cell, outline, scratch_.back().point);
+    cell.looked = find_hidden_events(view, cell, outline, scratch_.back().point);
+    if (!cell.looked) cell.error += kUnnoticed * cell.most * area;
   }
   if (cell.mixed) cell.error = std::max(cell.error, truncation.last + kMixed * (greatest - least) * area);
   if (cell.mixed && greatest == 0) cell.error = kUnnoticed * cell.most * area;
@@ -257,18 +261,21 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
 }
 
 /// Looks for events that happen in a cell but not between its points, from one of which the outline was seen last.
-void ObstructedExchange::find_hidden_events(Viewpoint& view, Cell& cell, std::uint64_t outline, const Vec3& from) {
+/// Whether it could look for all of them, or until it found one, before it was to stop.
+bool ObstructedExchange::find_hidden_events(Viewpoint& view, Cell& cell, std::uint64_t outline, const Vec3& from) {
   if (edges_.empty()) edges_ = edges_of(*soup_, source_, items_);
   const std::vector<SeenEdge> edges = view.seen_edges();
-  for (const HiddenEvent& hidden : hidden_events(edges, edges_, from, cell.shape)) {
+  for (const HiddenEvent& hidden : hidden_events(edges, edges_, from, cell.shape, [&] { return is_over(); })) {
+    if (is_over()) return false;
     const Sighting beyond = sight(view, hidden.beyond);
     if (beyond.outline == outline) continue;
     cell.mixed = true;
     const auto known = std::ranges::find(found_, hidden.event.id(), &EdgeEvent::id);
     cell.found.push_back(static_cast<std::uint32_t>(events_.size() + static_cast<std::size_t>(known - found_.begin())));
     if (known == found_.end()) found_.push_back(hidden.event);
-    return;
+    return true;
   }
+  return !is_over();
 }
 
 /// Of the events that are known, straight ones first: which side of it a point is on.
@@ -474,6 +481,8 @@ void ObstructedExchange::cut_all() {
 
 void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t points,
                                 const std::function<bool()>& stop) {
+  most_points_ = points;
+  stop_ = &stop;
   const auto better = [&](std::uint32_t a, std::uint32_t b) {
     return cells_[a].error != cells_[b].error ? cells_[a].error < cells_[b].error : a < b;
   };
@@ -485,12 +494,12 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
     started_ = true;
     cut_all();
     for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-      if (!(stop && stop())) measure(view, cells_[c], kScoutOrder, tolerance);
+      if (!is_over()) measure(view, cells_[c], kScoutOrder, tolerance);
       running_error_ += cells_[c].error + cells_[c].point_error;
       push(c);
     }
   }
-  while (running_error_ > tolerance && points_ < points && !heap_.empty() && !(stop && stop())) {
+  while (running_error_ > tolerance && !heap_.empty() && !is_over()) {
     std::pop_heap(heap_.begin(), heap_.end(), better);
     const std::uint32_t worst = heap_.back();
     heap_.pop_back();

@@ -12,6 +12,7 @@
 #include "src/form_factor/edge_event.h"
 #include "src/form_factor/form_factor_bound.h"
 #include "src/form_factor/rounded_contact.h"
+#include "src/form_factor/rule_decay.h"
 #include "src/form_factor/visual_events.h"
 
 namespace exitance {
@@ -50,6 +51,7 @@ class ObstructedExchange {
     bool looked = false;               ///< for events that happen between its points and its sides
     std::vector<std::uint32_t> found;  ///< such events
     double integral = 0, error = 0, point_error = 0;
+    RuleDecay decay;  ///< of the rules that measured it
   };
 
   /// Where a point of a cell lies, its form factor, and the outline of what it sees.
@@ -59,12 +61,13 @@ class ObstructedExchange {
     std::uint64_t outline = 0;
   };
 
+  bool is_over() const { return points_ >= most_points_ || (*stop_ && (*stop_)()); }
   Cell unmeasured(const AreaCell& shape) const;
   PointFormFactor look(Viewpoint& view, const Vec3& from, double tolerance);
   std::uint64_t outline_of(const Viewpoint& view) const;
   Sighting sight(Viewpoint& view, const Vec3& from);
   void sight_corners(Viewpoint& view, const AreaCell& shape, std::vector<Sighting>& sightings);
-  void find_hidden_events(Viewpoint& view, Cell& cell, std::uint64_t outline, const Vec3& from);
+  bool find_hidden_events(Viewpoint& view, Cell& cell, std::uint64_t outline, const Vec3& from);
   double side_of_event(std::uint32_t e, const Vec3& x) const;
   std::vector<AreaCell> cut_along(std::uint32_t e, const AreaCell& shape) const;
   std::vector<std::uint32_t> events_in(Viewpoint& view, const Cell& cell);
@@ -91,7 +94,8 @@ class ObstructedExchange {
   std::vector<std::uint32_t> heap_;  ///< indices of cells, worst on top
   bool started_ = false;
   double running_error_ = 0;
-  std::uint64_t points_ = 0;
+  std::uint64_t points_ = 0, most_points_ = 0;
+  const std::function<bool()>* stop_ = nullptr;  ///< while it refines
   std::vector<WeightedPoint> scratch_;
   std::vector<double> weighted_;
   std::vector<Sighting> sightings_;

@@ -63,6 +63,12 @@ void add(PoleError& sum, double& worst, double error, double rate) {
   sum.fall = 1 / rate;
 }
 
+/// The sum of half axes of the ellipse about −1 and 1 that a point of the complex plane lies on.
+double ellipse_through(const std::complex<double>& z) {
+  const std::complex<double> root = std::sqrt(z * z - 1.0);
+  return std::max(std::abs(z + root), std::abs(z - root));
+}
+
 /// What an edge contributes to the form factor from a point (Lambert's sum), without sign.
 double contribution(const SeenEdge& e, const Vec3& x, const Vec3& normal) {
   const Vec3 p = e.a - x, q = e.b - x, across = cross(p, q);
@@ -122,8 +128,7 @@ PoleError corner_poles(std::span<const SeenEdge> edges, const Vec3& x, std::span
     // Beside a side the corner has part of the cell to its left and to its right.
     const double there = nearest.is_corner ? dot(at - near, along) / width : 0.5 * width,
                  beside = nearest.is_corner ? std::sqrt(std::max(0.0, d * d - there * there)) : d;
-    const std::complex<double> z(2 * there / width - 1, 2 * beside / width), root = std::sqrt(z * z - 1.0);
-    const double rate = std::max(std::abs(z + root), std::abs(z - root));
+    const double rate = ellipse_through({2 * there / width - 1, 2 * beside / width});
     const double differs = std::fabs(contribution(e, near, normal) - contribution(e, near + 0.5 * along, normal));
     add(result, worst, kCornerSize * std::min(area, d * d) * differs * std::pow(rate, -2 * order), rate);
   };
@@ -140,6 +145,16 @@ PoleError corner_poles(std::span<const SeenEdge> edges, const Vec3& x, std::span
     }
   }
   return result;
+}
+
+double ray_fall(std::span<const Vec3> contacts, const AreaCell& cell) {
+  if (cell.corners != 3 || !cell.is_straight()) return 0;
+  const Vec3 &a = cell.corner[0], &apex = cell.corner[2], side = cell.corner[1] - a;
+  const double width = norm(side);
+  const auto is_apex = [&](const Vec3& c) { return norm(apex - c) <= kSame * width; };
+  if (!(width > 0) || std::ranges::none_of(contacts, is_apex)) return 0;
+  const double there = dot(apex - a, side) / width, beside = norm(cross(apex - a, side)) / width;
+  return 1 / ellipse_through({2 * there / width - 1, 2 * beside / width});
 }
 
 }  // namespace exitance

@@ -27,9 +27,15 @@ PoleError crossing_poles(std::span<const SeenEdge> edges, const AreaCell& cell, 
 /// V, what the edge contributes from beside the corner less what it contributes from the cell's middle. In the interval
 /// [−1, 1] from the cell's point nearest to the corner to the one farthest from it, the corner is a point z of the
 /// complex plane, and a rule of order n errs by d² V |z + √(z² − 1)|^-2n. A triangle's last corner is no pole: its
-/// points lie on rays from there. `x`: where the edges are seen from. `contacts`: further corners in the cell's plane,
-/// such as those where edges pierce it.
+/// points lie on rays from there (ray_fall). `x`: where the edges are seen from. `contacts`: further corners in the
+/// cell's plane, such as those where edges pierce it.
 PoleError corner_poles(std::span<const SeenEdge> edges, const Vec3& x, std::span<const Vec3> contacts,
                        const AreaCell& cell, int order);
+
+/// Along rays from a contact what is seen hardly changes, from ray to ray it does. A rule over a triangle with the
+/// contact at its last corner takes rays to points of the first side, in equal steps of which the direction turns
+/// fastest where the side passes the contact: it is a function with poles where the (complex) distance is 0. How fast
+/// its coefficients fall at best, from one order to the next, at most 1; 0 for any other cell.
+double ray_fall(std::span<const Vec3> contacts, const AreaCell& cell);
 
 }  // namespace exitance

@@ -68,5 +68,37 @@ TEST(PairFormFactor, OneConvexBlockerTakesThreeHundredPoints) {
   EXPECT_NEAR(f.F, static_cast<double>(kShapiroBlocked), 1e-15);
 }
 
+/// A thousand edges may hide events between a cell's points: looking for those counts as work, too.
+TEST(PairFormFactor, AmongHundredsOfOccludersEndsWithItsPointsAndWhenItIsStopped) {
+  std::vector<Polygon> polygons{kSquare, {{{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}}, {}}};
+  constexpr int kRow = 20;
+  for (int i = 0; i < kRow; ++i) {
+    for (int j = 0; j < kRow; ++j) {
+      const Vec3 at{(i + 0.3) / kRow, (j + 0.2) / kRow, 0.3 + 0.001 * ((7 * i + 13 * j) % 400)};
+      const double size = 0.5 / kRow, tilt = 0.2 / kRow;
+      polygons.push_back({{at, at + Vec3{size, 0, tilt}, at + Vec3{0, size, -tilt}}, {}});
+    }
+  }
+  std::vector<Role> roles(polygons.size(), Role::sheet);
+  roles[0] = roles[1] = Role::patch;
+  const PolygonSoup soup(polygons, roles);
+  const ExchangeScene scene(soup);
+  const auto open = static_cast<double>(opposite_rectangles(1, 1, 1));
+  PairOptions options;
+  options.points = 1000;
+  const PairFormFactor few = PairIntegrator(scene).form_factor(0, 1, options);
+  EXPECT_FALSE(few.reached);
+  // Both ways, and of each no more than what one cell takes beyond its points.
+  EXPECT_LE(few.points, 2 * (options.points + 600));
+  EXPECT_LE(few.F, open);
+  int asked = 0;
+  options.points = 100'000;
+  options.stop = [&] { return ++asked > 40; };
+  const PairFormFactor stopped = PairIntegrator(scene).form_factor(0, 1, options);
+  EXPECT_FALSE(stopped.reached);
+  EXPECT_LE(stopped.points, 41 * 600u) << "one cell at most for each time it asked and was told to go on";
+  EXPECT_GE(stopped.F_error, 0.1 * open);
+}
+
 }  // namespace
 }  // namespace exitance
