@@ -47,11 +47,15 @@ std::vector<std::string> find_trespass(const EditedScene& scene, const SceneVers
   };
   const std::string& name = scene.scene().objects[object].name;
   if (slot.facet_first == slot.facet_last) return said;  // nothing of it has an area
-  Box own, others;
-  for (std::uint32_t f = 0; f < facets; ++f) {
-    if (soup.is_present(f)) (is_own(f) ? own : others).extend(box_of(f));
+  Box others;
+  bool is_alone = true;
+  for (std::uint32_t k = 0; k < version.objects(); ++k) {
+    if (k == object || !version.slot(k).present) continue;
+    others.extend(version.slot(k).box);
+    is_alone = false;
   }
-  if (!own.overlaps(others)) {
+  if (is_alone) return said;
+  if (!slot.box.overlaps(others)) {
     said.push_back(fmt::format("object '{}' has left the scene: nothing of it is between the other objects", name));
     return said;
   }

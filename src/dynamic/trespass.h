@@ -12,7 +12,7 @@ namespace exitance {
 /// What is odd about where an object of the scene's present version stands, in words; empty where nothing is:
 ///  - an edge of the object passes through the interior of another object's face, or the other way round (exact;
 ///    touching, edge on edge and faces in contact are in order);
-///  - all of the object lies outside of the box around all others.
+///  - all of the object lies outside of the box around all others, if there are others.
 /// Nothing is said of an object that is not there.
 std::vector<std::string> find_trespass(const EditedScene& scene, const SceneVersion& version, std::uint32_t object);
 
