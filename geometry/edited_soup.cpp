@@ -132,6 +132,7 @@ void PolygonSoup::update_coplanar(std::uint32_t first, std::span<const std::uint
 
 std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, PolygonRange gone, const Arrival& arrival) {
   Store& store = *before.store_;
+  store.take_back();
   Cut cut;
   std::size_t facets = 0, corners = 0;
   double extent_coming = 0, extent_leaving = 0;
@@ -190,6 +191,7 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   if (!store.closed_known &&
       std::ranges::any_of(after.touched_, [&](std::uint32_t f) { return after.is_against_patch(f); }))
     return std::nullopt;
+  after.store_ = store.whole();
   return after;
 }
 

@@ -124,6 +124,7 @@ PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role
   for (std::uint32_t f = 0; f < used_ && !store.closed_known; ++f) store.closed_known = is_against_patch(f);
   mark_closed(polygons);
   build_index();
+  store_ = store.whole();
 }
 
 /// After what was added.

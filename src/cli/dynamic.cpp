@@ -148,7 +148,7 @@ class Dynamic {
     links_.refuse_any("rebuild, direct, hvt or hvt-peu");
     set_options(given.scene);
 
-    store_.emplace(reference_file_);
+    store_.emplace(reference_ ? reference_file_ : "");
     EditSession session(given.scene, options_);
     std::optional<FrameReferences> references;
     if (reference_) references.emplace(given.scene, options_, session.solution(), memory_limit_.bytes());

@@ -44,7 +44,11 @@ std::string key_of(const EditSession& session, const FrameReferences& references
 }  // namespace
 
 ReferenceStore::ReferenceStore(std::filesystem::path file) : file_(std::move(file)) {
-  if (file_.empty() || !std::filesystem::exists(file_)) return;
+  if (file_.empty()) return;
+  if (!std::filesystem::exists(file_)) {
+    refuse_unwritable();
+    return;
+  }
   const ArchiveReader archive(file_, kKind);
   const std::vector<std::string> keys = archive.texts("keys");
   for (std::size_t k = 0; k < keys.size(); ++k) kept_.emplace(keys[k], archive.doubles(fmt::format("B_{}", k)));
@@ -60,12 +64,18 @@ std::optional<std::vector<double>> ReferenceStore::find(const EditSession& sessi
     B.resize(session.solution().version().elements() * session.solution().bands());
     return B;
   }
+  if (!file_.empty() && !is_new_) refuse_unwritable();
   auto found = references.find(session.solution(), stop);
   if (found) {
     kept_.emplace(key, *found);
     is_new_ = true;
   }
   return found;
+}
+
+/// Begins a file, of which nothing is left.
+void ReferenceStore::refuse_unwritable() const {
+  const ArchiveWriter draft(file_, kKind);
 }
 
 void ReferenceStore::save() {

@@ -16,11 +16,11 @@ namespace exitance {
 /// a run are computed once; with a file those of earlier runs are found again.
 class ReferenceStore {
  public:
-  /// The file may not be there yet; empty: none. Throws InputError where it is something else.
+  /// The file may not be there yet; empty: none. Throws InputError where it is something else, or cannot be made.
   explicit ReferenceStore(std::filesystem::path file);
 
   /// B by element and band of the present frame of a session: the one that is kept, or the references' own; none where
-  /// `stop` came first.
+  /// `stop` came first. Throws InputError, before it looks for one that is not kept, where that could not be written.
   std::optional<std::vector<double>> find(const EditSession& session, FrameReferences& references,
                                           const std::function<bool()>& stop);
 
@@ -28,6 +28,8 @@ class ReferenceStore {
   void save();
 
  private:
+  void refuse_unwritable() const;
+
   std::filesystem::path file_;
   std::map<std::string, std::vector<double>> kept_;
   bool is_new_ = false;

@@ -127,11 +127,7 @@ std::vector<double> estimated_importance(const VersionDifference& difference, st
   std::vector<double> importance = own_areas(difference);
   const auto add = [&](const SceneVersion& version, const ObjectSlot& slot) {
     if (!slot.present) return;
-    Box box;
     double area = 0;
-    for (std::uint32_t f = slot.facet_first; f < slot.facet_last; ++f) {
-      for (const Corner& c : version.soup().corners(version.soup().facets()[f])) box.extend(c.at);
-    }
     for (std::uint32_t p = 0; p < slot.patch_count; ++p) area += version.mesh().patches[slot.patch_first + p].area;
     const double share = area / 4 / points;
     double scene_area = 0;
@@ -142,7 +138,7 @@ std::vector<double> estimated_importance(const VersionDifference& difference, st
     }
     tbb::enumerable_thread_specific<std::unique_ptr<LookPast>> looks(
         [&] { return std::make_unique<LookPast>(version); });
-    for (const Vec3& point : points_in(box, points)) {
+    for (const Vec3& point : points_in(slot.box, points)) {
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), 64), [&](const auto& some) {
         LookPast& look = *looks.local();
         for (std::size_t k = some.begin(); k < some.end(); ++k) {

@@ -36,6 +36,7 @@ SceneVersion::SceneVersion(const EditedScene& scene, const MeshOptions& options)
     slot.patch_count = patch - slot.patch_first;
   }
   place_objects(scene, true);
+  for (ObjectSlot& slot : slots_) slot.box = box_of(slot);
   find_objects();
   index_elements();
 }
@@ -56,6 +57,7 @@ SceneVersion::SceneVersion(const SceneVersion& before, const EditedScene& scene,
   const bool shares = soup_.shares_with(before.soup_);
   if (shares) slots_[object].polygons = soup_.arrived();
   place_objects(scene, !shares);
+  slots_[object].box = box_of(slots_[object]);
   const PatchMesh own =
       make_patch_mesh(scene.scene(), soup_, options, surfaces.first, surfaces.last, slots_[object].polygons.first);
   object_of_patch_ = before.object_of_patch_;
@@ -164,6 +166,14 @@ void SceneVersion::place_objects(const EditedScene& scene, bool soup_is_new) {
     slot.facet_first = soup_.first_facet(slot.polygons.first);
     slot.facet_last = soup_.first_facet(slot.polygons.last);
   }
+}
+
+Box SceneVersion::box_of(const ObjectSlot& slot) const {
+  Box box;
+  for (std::uint32_t f = slot.facet_first; slot.present && f < slot.facet_last; ++f) {
+    for (const Corner& c : soup_.corners(soup_.facets()[f])) box.extend(c.at);
+  }
+  return box;
 }
 
 std::uint32_t SceneVersion::object_of_facet(std::uint32_t facet) const {

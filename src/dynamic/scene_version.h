@@ -25,6 +25,7 @@ struct ObjectSlot {
   std::uint32_t surface_first = 0;                ///< in the scene
   std::uint32_t facet_first = 0, facet_last = 0;  ///< in the version's soup
   PolygonSoup::PolygonRange polygons;             ///< likewise
+  Box box;                                        ///< of its facets; empty where none has an area
   std::uint64_t pose = 0;                         ///< changes with every edit of the object's geometry
   bool present = false;
 };
@@ -91,6 +92,7 @@ class SceneVersion {
                   std::uint32_t surface_offset, const ObjectSlot& slot);
   void take_others(const SceneVersion& before, std::uint32_t object);
   void place_objects(const EditedScene& scene, bool soup_is_new);
+  Box box_of(const ObjectSlot& slot) const;
   void find_objects();
   void find_object(std::uint32_t object);
   void index_elements();

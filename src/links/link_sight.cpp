@@ -45,7 +45,8 @@ Obstacles::Obstacles(const Obstacles& before, const EditedScene& scene, std::uin
       facets_(before.facets_) {
   if (soup_.shares_with(before.soup_)) {
     polygons_[object] = soup_.arrived();
-    facets_[object] = {soup_.first_facet(polygons_[object].first), soup_.first_facet(polygons_[object].last)};
+    facets_[object] =
+        facet_range(soup_, soup_.first_facet(polygons_[object].first), soup_.first_facet(polygons_[object].last));
   } else {
     place(scene, order_after(before, scene, object));
   }
@@ -60,7 +61,7 @@ void Obstacles::place(const EditedScene& scene, std::span<const std::uint32_t> o
     const EditedScene::Range range = scene.surfaces_of(object);
     const std::uint32_t last = first + range.last - range.first;
     polygons_[object] = {first, last};
-    facets_[object] = {soup_.first_facet(first), soup_.first_facet(last)};
+    facets_[object] = facet_range(soup_, soup_.first_facet(first), soup_.first_facet(last));
     first = last;
   }
 }

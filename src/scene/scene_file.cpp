@@ -42,6 +42,8 @@ class SceneFile {
     for (TomlTable& event : file.tables("event")) read_event(event);
     for (TomlTable& camera : file.tables("camera_path")) read_camera_path(camera);
     file.refuse_unknown_keys();
+    if (scene_.surfaces.empty() && !scene_.absent.empty())
+      file.fail(0, "has no surfaces at the start, as all objects are absent; leave \"absent\" out of one");
     if (scene_.surfaces.empty()) file.fail(0, "has no surfaces; add an [[object]]");
     settle_materials_with_events();
     return {std::move(scene_), links_, std::move(events_), std::move(camera_path_)};
@@ -162,7 +164,12 @@ class SceneFile {
     switch (event.edit.operation) {
       case Operation::add:
       case Operation::move:
-        if (event.edit.operation == Operation::move || has_placement(table)) event.edit.placement = read_placement(table);
+        if (has_placement(table)) {
+          event.edit.placement = read_placement(table);
+        } else if (event.edit.operation == Operation::move) {
+          table.fail(table.line(), "a move needs \"translate\", \"rotate\" or \"scale\", from where the object was "
+                                   "given; add one");
+        }
         break;
       case Operation::reshape:
         read_new_shape(table, event.edit, object);

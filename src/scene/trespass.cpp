@@ -31,7 +31,19 @@ bool cross_each_other(const PolygonSoup& soup, const Facet& a, const Facet& b, S
   return edges_pass(a, b) || edges_pass(b, a);
 }
 
+Box box_of(const PolygonSoup& soup, std::uint32_t facet) {
+  Box box;
+  for (const Corner& c : soup.corners(soup.facets()[facet])) box.extend(c.at);
+  return box;
+}
+
 }  // namespace
+
+FacetRange facet_range(const PolygonSoup& soup, std::uint32_t first, std::uint32_t last) {
+  FacetRange range{first, last};
+  for (std::uint32_t f = first; f < last; ++f) range.box.extend(box_of(soup, f));
+  return range;
+}
 
 std::vector<std::string> find_trespass(const EditedScene& scene, const PolygonSoup& soup,
                                        std::span<const FacetRange> ranges, std::uint32_t object) {
@@ -40,18 +52,17 @@ std::vector<std::string> find_trespass(const EditedScene& scene, const PolygonSo
   if (!scene.is_present(object)) return said;
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
   const auto is_own = [&](std::uint32_t f) { return range.first <= f && f < range.last; };
-  const auto box_of = [&](std::uint32_t f) {
-    Box box;
-    for (const Corner& c : soup.corners(soup.facets()[f])) box.extend(c.at);
-    return box;
-  };
   const std::string& name = scene.scene().objects[object].name;
   if (range.first == range.last) return said;  // nothing of it has an area
-  Box own, others;
-  for (std::uint32_t f = 0; f < facets; ++f) {
-    if (soup.is_present(f)) (is_own(f) ? own : others).extend(box_of(f));
+  Box others;
+  bool is_alone = true;
+  for (std::uint32_t k = 0; k < ranges.size(); ++k) {
+    if (k == object || ranges[k].first == ranges[k].last) continue;
+    others.extend(ranges[k].box);
+    is_alone = false;
   }
-  if (!own.overlaps(others)) {
+  if (is_alone) return said;
+  if (!range.box.overlaps(others)) {
     said.push_back(fmt::format("object '{}' has left the scene: nothing of it is between the other objects", name));
     return said;
   }
@@ -60,7 +71,7 @@ std::vector<std::string> find_trespass(const EditedScene& scene, const PolygonSo
   StageCounts counts;
   for (std::uint32_t f = range.first; f < range.last; ++f) {
     found.clear();
-    soup.index().find(box_of(f), found);
+    soup.index().find(box_of(soup, f), found);
     const auto look = [&](std::uint32_t other) {
       if (is_own(other)) return;
       const auto of = static_cast<std::uint32_t>(

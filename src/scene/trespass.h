@@ -14,12 +14,16 @@ namespace exitance {
 /// The facets of an object, first … last − 1; empty where it is not there.
 struct FacetRange {
   std::uint32_t first = 0, last = 0;
+  Box box = {};  ///< around them
 };
+
+/// With its box.
+FacetRange facet_range(const PolygonSoup& soup, std::uint32_t first, std::uint32_t last);
 
 /// What is odd about where an object of the scene stands, in words; empty where nothing is:
 ///  - an edge of the object passes through the interior of another object's face, or the other way round (exact;
 ///    touching, edge on edge and faces in contact are in order);
-///  - all of the object lies outside of the box around all others.
+///  - all of the object lies outside of the box around all others, if there are others.
 /// Nothing is said of an object that is not there. soup: of the scene; facets: in it, by object, of all that is
 /// present.
 std::vector<std::string> find_trespass(const EditedScene& scene, const PolygonSoup& soup,

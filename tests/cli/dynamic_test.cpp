@@ -98,6 +98,23 @@ TEST(Dynamic, BadInputAndLimits) {
   std::ofstream(scratch / "no.h5") << "no archive";
   EXPECT_EQ(run("dynamic " + data("cube.toml") + kQuick + " --references " + (scratch / "no.h5").string() + out).code,
             3);
+  const Outcome unwritable = run("dynamic " + data("cube.toml") + kQuick + " --references " +
+                                 (scratch / "nowhere" / "kept.h5").string() + " -o " + (scratch / "never").string());
+  EXPECT_EQ(unwritable.code, 3);
+  EXPECT_THAT(unwritable.err, HasSubstr("cannot be written"));
+  EXPECT_FALSE(std::filesystem::exists(scratch / "never" / "frames.json")) << "it is said before the work";
+  std::ofstream(scratch / "still.toml") << contents(data("cube.toml"))
+                                        << "[[event]]\ntime = 4\nobject = \"table top\"\noperation = \"move\"\n";
+  const Outcome still = run("dynamic " + (scratch / "still.toml").string() + kQuick + out);
+  EXPECT_EQ(still.code, 3);
+  EXPECT_THAT(still.err, HasSubstr("still.toml:102: a move needs"));
+  std::ofstream(scratch / "empty.toml") << "[[material]]\nname = \"grey\"\nrho = 0.5\n[[object]]\nname = \"box\"\n"
+                                           "box = {min = [0, 0, 0], max = [1, 1, 1]}\nmaterial = \"grey\"\n"
+                                           "absent = true\n[[event]]\ntime = 1\nobject = \"box\"\n"
+                                           "operation = \"add\"\n";
+  const Outcome empty = run("dynamic " + (scratch / "empty.toml").string() + out);
+  EXPECT_EQ(empty.code, 3);
+  EXPECT_THAT(empty.err, HasSubstr("all objects are absent"));
   const Outcome late = run("dynamic " + data("cube.toml") + " --no-images --time-limit 0.05" + out);
   EXPECT_EQ(late.code, 4);
   EXPECT_THAT(late.err, HasSubstr("the partial result was saved"));

@@ -278,6 +278,32 @@ TEST(Trespass, SaysWhatNoObjectCanDo) {
   EXPECT_THAT(said({0.5, -0.5, 0}), ElementsAre(HasSubstr("passes through 'L'")));
 }
 
+TEST(Trespass, SaysNothingOfAnObjectThatIsAlone) {
+  Scene scene = test_room();
+  std::erase_if(scene.surfaces, [](const Surface& s) { return s.object != 1; });
+  const EditedScene edited(scene);
+  EXPECT_THAT(find_trespass(edited, SceneVersion(edited, {1.5, 1}), 1), IsEmpty());
+}
+
+// Versions that edits make know where objects are without looking at them all.
+TEST(Trespass, SaysTheSameAfterEditsAsOfASceneMadeAnew) {
+  RandomEdits random(7);
+  EditedScene scene(test_room());
+  auto version = std::make_shared<const SceneVersion>(scene, MeshOptions{1.5, 1});
+  std::size_t said = 0;
+  for (int k = 0; k < 30; ++k) {
+    Edit edit = random.next(scene);
+    if (k % 3 == 0 && edit.placement) edit.placement->translation = edit.placement->translation + Vec3{1, 0, 0};
+    if (k % 7 == 6 && edit.placement) edit.placement->translation = edit.placement->translation + Vec3{9, 0, 0};
+    if (!scene.apply(edit).geometry) continue;
+    version = std::make_shared<const SceneVersion>(*version, scene, MeshOptions{1.5, 1}, edit.object);
+    const auto after = find_trespass(scene, *version, edit.object);
+    EXPECT_EQ(after, find_trespass(scene, SceneVersion(scene, {1.5, 1}), edit.object)) << k;
+    said += after.size();
+  }
+  EXPECT_GT(said, 3u);
+}
+
 TEST(Trespass, SaysNothingOfWhatHasNoArea) {
   EditedScene scene(test_room());
   Edit edit{Operation::reshape, 1, {}, {}, {}};

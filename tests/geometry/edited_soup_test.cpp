@@ -239,6 +239,36 @@ TEST_F(EditedRoom, BranchesAreIndependent) {
   check(*second, ranges, other);
 }
 
+/// What soups that are gone have brought, and those that were given up, makes room for others; what is left is as it was.
+TEST_F(EditedRoom, SoupsThatAreGoneMakeRoomForOthers) {
+  const Objects::List all = objects_.all();
+  const PolygonSoup base = fresh(all);
+  Objects kept = objects_;
+  kept.faces[3] = placed(shape(3), 0.3, {0.5, 0.5, 2});
+  const auto first = PolygonSoup::edited(base, {}, kept.list(3, 4).arrival());
+  ASSERT_TRUE(first);
+  std::mt19937 random(1);
+  const auto check = [&](const PolygonSoup& soup, std::uint32_t object, const Objects& objects) {
+    const Objects::List list = objects.all();
+    std::vector<Range> ranges = all.of_object;
+    if (object != 0) ranges[object] = soup.arrived();
+    const PolygonSoup anew = fresh(list);
+    expect_same(soup, anew, facet_map(soup, ranges, anew, list.of_object), random);
+  };
+  Objects moved = objects_;
+  std::size_t facets = 0;
+  for (int k = 0; k < 300; ++k) {
+    moved.faces[4] = placed(shape(4), 0.01 * k, {0.5, 0.5, 2.2});
+    facets += moved.faces[4]->size();
+    const auto soup = PolygonSoup::edited(base, {}, moved.list(4, 5).arrival());
+    ASSERT_TRUE(soup) << k;
+    if (k % 100 == 99) check(*soup, 4, moved);
+  }
+  EXPECT_GT(facets, 800u) << "more than there is room for";
+  check(*first, 3, kept);
+  check(base, 0, objects_);
+}
+
 TEST_F(EditedRoom, MustBeMadeAnewWhereAnEditConcernsOthers) {
   const PolygonSoup base = fresh(objects_.all());
   const auto comes = [&](std::uint32_t object, const Faces& faces) {
