@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <vector>
 
 #include "tests/geometry/solids.h"
@@ -68,6 +69,14 @@ TEST_P(Touching, ASolidInTheCornerOfARoomIsOne) {
 
 INSTANTIATE_TEST_SUITE_P(Placed, Touching, testing::Bool(),
                          [](const auto& place) { return place.param ? "turned" : "exact"; });
+
+TEST(PolygonSoup, WantsARoleAndARankOfEachPolygonOrNone) {
+  const Faces cube = cube_at(0, 0, 0);
+  const std::vector<Role> roles(cube.size() - 1, Role::patch);
+  const std::vector<PolygonSoup::Rank> ranks(cube.size() + 1);
+  EXPECT_THROW(PolygonSoup(cube, roles), std::invalid_argument);
+  EXPECT_THROW(PolygonSoup(cube, {}, ranks), std::invalid_argument);
+}
 
 }  // namespace
 }  // namespace exitance

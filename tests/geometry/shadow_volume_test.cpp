@@ -4,6 +4,7 @@
 
 #include <array>
 #include <random>
+#include <span>
 
 #include "geometry/viewpoint.h"
 
@@ -265,6 +266,52 @@ TEST(ShadowVolume, ClassifiesPolygonsAsTheirPointsSay) {
   }
   EXPECT_GT(counts[0], 10u);
   EXPECT_GT(counts[1], 10u);
+}
+
+// A sheet or a box before the object or behind it, as seen from the floor: what it hides the object cannot take.
+TEST(ShadowVolume, WhatAScreenHidesTakesNothing) {
+  Random random(3);
+  std::size_t screened = 0, changed = 0;
+  for (int kind = 0; kind < 4; ++kind) {
+    for (int way = 0; way < 3; ++way) {
+      const double z = kind % 2 == 0 ? 0.5 : 1.5;
+      Faces faces = {{{{-0.5, -0.5, 2}, {-0.5, 0.5, 2}, {0.5, 0.5, 2}, {0.5, -0.5, 2}}, {}},
+                     {{{-6, -5, 0}, {6, -5, 0}, {0, 8, 0}}, {}}};
+      if (kind < 2) {
+        faces.push_back({{{-0.75, -0.75, z}, {0.75, -0.75, z}, {0, 1.25, z}}, {}});
+      } else {
+        add_box(faces, {-0.5, -0.5, z - 0.125}, {0.5, 0.5, z + 0.125});
+      }
+      const auto object = static_cast<std::uint32_t>(faces.size());
+      faces.push_back({{{-0.25, -0.25, 1}, {0.25, -0.25, 1}, {0, 0.25, 1}}, {}});
+      for (Polygon& face : faces) {
+        for (Vec3& v : face.outer) v = turned(v, way);
+      }
+      const std::span<const Polygon> all = faces;
+      const PolygonSoup with(all), without(all.first(object));
+      ShadowCaster caster(with, with.first_facet(object), with.first_facet(object + 1));
+      ShadowVolume volume(caster);
+      volume.set_shooter({0, {}});
+      ASSERT_EQ(with.shells().size(), kind < 2 ? 0u : 1u);
+      const std::uint32_t screen =
+          kind < 2 ? with.first_facet(2) : static_cast<std::uint32_t>(with.facets().size());  // the first shell's item
+      Viewpoint view(with), free_view(without);
+      for (int k = 0; k < 400; ++k) {
+        const Receiver receiver{turned({random.between(-1, 1), random.between(-1, 1), 0}, way), turned({0, 0, 1}, way),
+                                with.first_facet(1)};
+        view.look_from(receiver);
+        free_view.look_from(receiver);
+        const PointFormFactor seen = view.form_factor({0, {}}), free = free_view.form_factor({0, {}});
+        const bool differs = std::fabs(seen.F - free.F) > seen.error + free.error;
+        const bool is_outside = volume.at(receiver, {&screen, 1}) == Shade::outside;
+        EXPECT_FALSE(differs && is_outside) << kind << ' ' << way << ": " << free.F << " to " << seen.F;
+        screened += is_outside && volume.at(receiver) != Shade::outside;
+        changed += differs;
+      }
+    }
+  }
+  EXPECT_GT(screened, 200u);
+  EXPECT_GT(changed, 200u);
 }
 
 TEST(ShadowVolume, ARugOnTheShooterCoversItForAll) {

@@ -105,6 +105,24 @@ TEST(Viewpoint, CoversLieOnTheFront) {
   EXPECT_GT(behind.F, 0.5);
 }
 
+// Two tiles in the floor's plane with a common edge: the one before it in the scene lies under it and hides nothing,
+// the one behind it lies on it, and their edge bounds what is hidden.
+TEST(Viewpoint, ATileUnderTheFloorDoesNotCarryOnOneThatLiesOnIt) {
+  const Polygon under{{{1, 1, 0}, {2, 1, 0}, {2, 3, 0}, {1, 3, 0}}, {}};
+  const Polygon floor{{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, {}};
+  const Polygon on_top{{{2, 1, 0}, {3, 1, 0}, {3, 3, 0}, {2, 3, 0}}, {}};
+  const auto seen = [](const std::vector<Polygon>& polygons, std::uint32_t facet) {
+    const PolygonSoup soup(polygons);
+    Viewpoint view(soup);
+    view.look_from({{1.75, 2, 3}, {0.1, 0.2, -1}});
+    return view.form_factor({facet, {}});
+  };
+  const PointFormFactor with = seen({under, floor, on_top}, 1), without = seen({floor, on_top}, 0),
+                        whole = seen({under, floor}, 1);
+  EXPECT_NEAR(with.F, without.F, with.error + without.error);
+  EXPECT_LT(with.F, whole.F - 0.01);
+}
+
 // A floor and a rug of two triangles, one of which lies in the floor's plane while the other dips under it: it is the
 // first that hides, and the edge between them bounds what it hides.
 TEST(Viewpoint, OnlyTheFlushHalfOfABentRugCovers) {
