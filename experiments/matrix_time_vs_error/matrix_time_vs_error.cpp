@@ -42,7 +42,7 @@ std::vector<Subject> subjects() {
           {"box room 1/3 m", read("box_on_floor.toml"), 0.3334, all},
           {"Cornell box 0.1 m", read("cornell_box_closed.toml"), 0.1, all},
           {"furnished room of 100", make_furnished_room(100, 1), 0, {1e-2, 1e-3, 1e-4}, 1e-5, 4096},
-          {"furnished room of 200", make_furnished_room(200, 1), 0, {1e-2, 1e-3}, 1e-4, 4096},
+          {"another furnished room of 100", make_furnished_room(100, 2), 0, {1e-2, 1e-3}, 1e-4, 4096},
           {"box room 1/7 m", read("box_on_floor.toml"), 0.1429, {1e-3, 1e-5, 1e-7}, 1e-8, 64}};
 }
 
