@@ -13,6 +13,7 @@
 #include "experiments/link_scene.h"
 #include "experiments/plot_note.h"
 #include "src/output/plot.h"
+#include "src/solve/radiosity_system.h"
 
 namespace exitance {
 namespace {
@@ -43,6 +44,27 @@ std::vector<double> at_nodes_of(const LinkedRadiosity& links, const LinkedRadios
   return B;
 }
 
+/// Share of the power (luminance) that leaves the darkest half of the area which B lacks there, or has too much.
+double power_lost_in_the_dark(const LinkedRadiosity& links, std::span<const double> truth, std::span<const double> B) {
+  const std::vector<double> weights = luminance_weights(links.radiosity().bands());
+  const auto Y = [&](std::span<const double> of, std::uint32_t n) {
+    double y = 0;
+    for (std::size_t b = 0; b < weights.size(); ++b) y += weights[b] * of[n * weights.size() + b];
+    return y;
+  };
+  std::vector<std::uint32_t> elements = links.elements();
+  std::ranges::stable_sort(elements, {}, [&](std::uint32_t n) { return Y(truth, n); });
+  double half = 0, power = 0, lost = 0;
+  for (const std::uint32_t n : elements) half += 0.5 * links.tree().node(n).area;
+  for (const std::uint32_t n : elements) {
+    const double area = links.tree().node(n).area;
+    if ((half -= area) < 0) break;
+    power += area * Y(truth, n);
+    lost += area * (Y(truth, n) - Y(B, n));
+  }
+  return power > 0 ? lost / power : 0;
+}
+
 struct Tables {
   CsvTable updates{{"scene",
                     "way",
@@ -58,7 +80,9 @@ struct Tables {
                     "error_before",
                     "error",
                     "error_worst_1_percent",
+                    "power_lost_in_the_dark",
                     "error_to_finer_links",
+                    "power_lost_in_the_dark_to_finer_links",
                     "seconds",
                     "times_faster",
                     "seconds_form_factors",
@@ -119,7 +143,9 @@ void update(const std::string& name, bool reduced, Tables& tables) {
                                    digits(error_of(reference, before).all),
                                    digits(error.all),
                                    digits(error.worst_1_percent),
+                                   digits(power_lost_in_the_dark(links, reference, links.radiosity().B())),
                                    digits(error_of(truth, links.radiosity().B()).all),
+                                   digits(power_lost_in_the_dark(links, truth, links.radiosity().B())),
                                    digits(done.cpu_seconds),
                                    digits(direct_seconds / done.cpu_seconds),
                                    digits(sight.seconds_form_factors),
@@ -148,8 +174,8 @@ int run(int argc, char** argv) {
   }
   return wanted.check(tables.updates, 2, 0.05,
                       // What is converged differs from its reference by the tolerance, or by roundings.
-                      {"error", "error_worst_1_percent", "seconds", "times_faster", "seconds_form_factors",
-                       "seconds_visibility", "seconds_shafts", "seconds_exchange"});
+                      {"error", "error_worst_1_percent", "power_lost_in_the_dark", "seconds", "times_faster",
+                       "seconds_form_factors", "seconds_visibility", "seconds_shafts", "seconds_exchange"});
 }
 
 }  // namespace
