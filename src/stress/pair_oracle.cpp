@@ -271,7 +271,8 @@ void PairOracle::add_pair(const Piece& a, const Piece& b, const std::vector<Hide
       if (is_cut) error_ += 16 * kRoundoff * (size_ + norm(one[0])) * size_;
     }
   }
-  error_ += rounding;
+  // exchange_truth takes what lies within 1e-14 of the size of a plane for lying in it.
+  error_ += rounding + 4e-14L * size_ * size_;
 }
 
 PairOracleAnswer PairOracle::answer() {
