@@ -118,11 +118,15 @@ class PairOracle {
   long double receiver_area_ = 0, source_area_ = 0;
 };
 
+std::vector<Piece> facets_of(const Polygon& polygon) {
+  std::vector<Piece> pieces;
+  for (const Loop& facet : cut_into_facets(polygon)) pieces.push_back(piece_of(facet));
+  return pieces;
+}
+
 /// A quadrilateral that is bent by rounding only is one piece, anything else its facets.
 std::vector<Piece> PairOracle::pieces_of(const Polygon& polygon) const {
-  const std::vector<Loop> facets = cut_into_facets(polygon);
-  std::vector<Piece> pieces;
-  for (const Loop& facet : facets) pieces.push_back(piece_of(facet));
+  std::vector<Piece> pieces = facets_of(polygon);
   if (pieces.size() != 2 || polygon.outer.size() != 4 || !polygon.holes.empty()) return pieces;
   const ExactLoop whole = exact_loop(polygon.outer);
   if (!is_within(pieces[0].plane, whole, kFlat * size_)) return pieces;
@@ -161,13 +165,24 @@ PairOracle::PairOracle(const Question& given, Care care) : care_(care) {
   measure(question.source.outer);
   receiver_ = pieces_of(question.receiver);
   source_ = pieces_of(question.source);
+  // What of a contact lies in front of a plane is decided facet by facet.
+  bool of_receiver = false, of_source = false;
+  const auto touches = [&](const std::vector<Piece>& pieces, const std::vector<Piece>& end) {
+    return std::ranges::any_of(pieces, [&](const Piece& p) {
+      return std::ranges::any_of(end, [&](const Piece& e) { return is_within(e.plane, p.loop, kContact * size_); });
+    });
+  };
   const auto add_sheets = [&](const std::vector<Piece>& pieces) {
     for (const Piece& p : pieces) hiders_.push_back({{p}, false});
   };
   for (const Obstacle& obstacle : question.occluders) {
     std::vector<Piece> faces;
     for (const Polygon& face : obstacle.faces) {
-      const std::vector<Piece> pieces = pieces_of(face);
+      std::vector<Piece> pieces = pieces_of(face);
+      const bool at_receiver = touches(pieces, receiver_), at_source = touches(pieces, source_);
+      if (at_receiver || at_source) pieces = facets_of(face);
+      of_receiver = of_receiver || at_receiver;
+      of_source = of_source || at_source;
       faces.insert(faces.end(), pieces.begin(), pieces.end());
     }
     Hider solid{faces, true};
@@ -183,6 +198,8 @@ PairOracle::PairOracle(const Question& given, Care care) : care_(care) {
       for (const Piece& p : faces) hiders_.push_back({{p}, true});
     }
   }
+  if (of_receiver) receiver_ = facets_of(question.receiver);
+  if (of_source) source_ = facets_of(question.source);
 }
 
 /// What of a piece contacts leave. They are taken out of the hiders, but for whole solids that stand on the piece.
@@ -254,7 +271,8 @@ void PairOracle::add_pair(const Piece& a, const Piece& b, const std::vector<Hide
       if (is_cut) error_ += 16 * kRoundoff * (size_ + norm(one[0])) * size_;
     }
   }
-  error_ += rounding;
+  // exchange_truth takes what lies within 1e-14 of the size of a plane for lying in it.
+  error_ += rounding + 4e-14L * size_ * size_;
 }
 
 PairOracleAnswer PairOracle::answer() {

@@ -27,7 +27,8 @@ enum class Care : std::uint8_t {
 
 /// Form factors between the fronts of receiver and source. What lies within 1e-11 of their size of the plane of one of
 /// them is in contact with it: where it lies in front, exactly, or in the plane and covers it (Role), it is cut off;
-/// solids that stand on it cover it whatever rounding has done. The error covers the gaps of contacts, too. Throws
+/// solids that stand on it cover it whatever rounding has done. The error covers the gaps of contacts, and
+/// parts that rise above a plane by less than 1e-14 of the size. Throws
 /// OutOfReach where receiver and source lie in one plane but for rounding, or where there are more pieces, or edges
 /// between, than can be looked at. REQUIRES: what `answer` (point_question.h) does not refuse.
 PairOracleAnswer oracle_pair_form_factors(const Question& question, Care care);

@@ -9,6 +9,7 @@ namespace exitance {
 namespace {
 
 constexpr double kTolerance = 1e-4;
+constexpr std::uint64_t kPoints = 5'000;  // what needs more keeps its error
 
 Verdict judge(const Opinion& opinion, const PairOracleAnswer& truth) {
   constexpr long double kLeast = 1e-15L;
@@ -25,6 +26,7 @@ Opinion ask_pair(const Question& question, bool both_ways) {
   const ExchangeScene exchange(scene.soup);
   PairOptions options;
   options.tolerance = kTolerance;
+  options.points = kPoints;
   options.both_ways = both_ways;
   const PairFormFactor f = PairIntegrator(exchange).form_factor(0, 1, options);
   Opinion opinion;

@@ -30,21 +30,6 @@ PropertyTrial sum(const Opinion& opinion, std::span<const Opinion> of_forms) {
   return {std::fabs(opinion.F - total), margins};
 }
 
-/// What a shaft is said to be, from hidden to open: 0 to 2; away stands by itself.
-int openness(const Opinion& opinion) {
-  switch (opinion.visibility) {
-    case Visibility::away:
-      return -1;
-    case Visibility::blocked:
-      return 0;
-    case Visibility::partial:
-      return 1;
-    case Visibility::open:
-      return 2;
-  }
-  return 1;
-}
-
 PropertyTrial same_class(const Opinion& opinion, std::span<const Opinion> of_forms) {
   return {static_cast<double>(opinion.visibility != of_forms[0].visibility), 0};
 }
@@ -55,8 +40,10 @@ PropertyTrial as_open(const Opinion& opinion, std::span<const Opinion> of_forms)
   return {static_cast<double>(one != other), 0};
 }
 
-PropertyTrial not_more_open(const Opinion& opinion, std::span<const Opinion> of_forms) {
-  return {static_cast<double>(openness(of_forms[0]) > openness(opinion)), 0};
+/// What is added may join a solid, which then no longer blocks as a whole.
+PropertyTrial not_opened(const Opinion& opinion, std::span<const Opinion> of_forms) {
+  const bool was_open = opinion.visibility == Visibility::open, is_open = of_forms[0].visibility == Visibility::open;
+  return {static_cast<double>(is_open && !was_open), 0};
 }
 
 PropertyTrial same_classes(const Opinion& opinion, std::span<const Opinion> of_forms) {
@@ -118,7 +105,7 @@ std::span<const Property> shaft_properties() {
                                       Property{"as_sheets", kAsSheets, as_sheets, as_open},
                                       Property{"scaled", kScaled, scaled, same_classes},
                                       Property{"translated", kTranslated, translated, same_class},
-                                      Property{"added", kAdded, added, not_more_open},
+                                      Property{"added", kAdded, added, not_opened},
                                       Property{"swapped", kSwapped, swapped_whole, same_class}};
   return kProperties;
 }

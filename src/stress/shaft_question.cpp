@@ -69,7 +69,10 @@ std::vector<Classes> allowed_of(const ShaftOracle& oracle, const AreaScene::Ends
     has_certain_block = has_certain_block || (is_blocking && !is_open_to_doubt);
     most = std::max(most, c);
     if (index == a.facet || index == b.facet) continue;
-    in_plane = in_plane || oracle.touches_plane(index, a.facet) || oracle.touches_plane(index, b.facet);
+    if (oracle.touches_plane(index, a.facet) || oracle.touches_plane(index, b.facet)) {
+      in_plane = true;  // other facets of a bent end are so by identity, though lines may cross them
+      if (!item.solid) continue;
+    }
     all.loops.insert(all.loops.end(), item.loops.begin(), item.loops.end());
     all.planes.insert(all.planes.end(), item.planes.begin(), item.planes.end());
   }
