@@ -54,9 +54,10 @@ ClusterLinks::Refinement ClusterLinks::refine(std::span<const double> luminance,
   emitted_.assign(clusters.size(), 0);
   for (std::size_t c = clusters.size(); c-- > 0;) {  // children stand behind their parents
     if (clusters[c].single()) {
-      const std::uint32_t root = clusters_.roots_of(clusters[c]).front();
-      most_[c] = luminance[tree_->root(root).node_first];
-      emitted_[c] = clusters_.place(root).area * most_[c];
+      const std::uint32_t r = clusters_.roots_of(clusters[c]).front();
+      const Root& root = tree_->root(r);
+      most_[c] = *std::ranges::max_element(luminance.subspan(root.node_first, root.node_count));
+      emitted_[c] = clusters_.place(r).area * luminance[root.node_first];
     } else {
       const std::uint32_t a = clusters[c].first_child, b = a + 1;
       most_[c] = std::max(most_[a], most_[b]);

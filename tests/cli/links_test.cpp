@@ -106,7 +106,7 @@ TEST(Links, WarnOfWhatPassesThroughWalls) {
   const Outcome outcome = run("dynamic " + (scratch / "wall.toml").string() + " --method hvt --eps 0.5 --min-area 9 " +
                               "--no-images -o " + (scratch / "d").string());
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("wall.toml:13: object 'cube' passes through 'room'"));
+  EXPECT_THAT(outcome.err, HasSubstr("wall.toml:14: object 'cube' passes through 'room'"));
 }
 
 TEST(Links, OptionsThatMeanNothingAreRefused) {
