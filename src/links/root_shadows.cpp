@@ -10,11 +10,11 @@ namespace exitance {
 
 ChangedObjects::ChangedObjects(const Obstacles& obstacles, std::span<const std::uint8_t> moved) {
   for (std::uint32_t object = 0; object < moved.size(); ++object) {
-    const auto [first, last] = obstacles.facets_of(object);
-    if (moved[object] == 0 || first == last) continue;
+    const FacetRange facets = obstacles.facets_of(object);
+    if (moved[object] == 0 || facets.first == facets.last) continue;
     const std::vector<std::uint32_t> of_object = obstacles.items_of(object);
     items.insert(items.end(), of_object.begin(), of_object.end());
-    casters.push_back(std::make_unique<ShadowCaster>(obstacles.soup(), first, last));
+    casters.push_back(std::make_unique<ShadowCaster>(obstacles.soup(), facets.first, facets.last));
   }
   std::ranges::sort(items);
 }
