@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace exitance {
 namespace {
@@ -22,6 +23,8 @@ void PointShaft::reset(const Receiver& receiver, const ShaftEnd& shooter) {
     for (const Corner& c : soup_.corners(of_shooter)) loop_.push_back(c.at);
   }
   half_spaces_.clear();
+  outlines_.clear();
+  screens_.clear();
   box_ = {};
   box_.extend(receiver_.point);
   for (const Vec3& p : loop_) box_.extend(p);
@@ -110,22 +113,31 @@ bool PointShaft::blocks(const Shell& shell) {
   return std::all_of(loop_.begin(), loop_.end(), meets);
 }
 
+/// Whether all of an item lies in front of the shooter's plane and some of it faces the receiver or turns its back.
 bool PointShaft::is_screen(std::uint32_t item) {
-  if (empty_) return false;
   const auto facets = static_cast<std::uint32_t>(soup_.facets().size());
   const Plane& plane = soup_.facets()[shooter_.facet].plane;
   const auto in_front = [&](const Vec3& v) { return side_of(plane, v, counts_) > 0; };
   if (item < facets) {
     const Facet& f = soup_.facets()[item];
-    return enters(item) && side_of(f.plane, receiver_.point, counts_) != 0 &&
+    return item != receiver_.facet && side_of(f.plane, receiver_.point, counts_) != 0 &&
            std::ranges::all_of(soup_.corners(f), [&](const Corner& c) { return in_front(c.at); });
   }
   const Shell& shell = soup_.shells()[item - facets];
-  const auto is_seen = [&](std::uint32_t f) {
-    return side_of(soup_.facets()[f].plane, receiver_.point, counts_) > 0 && enters(f);
-  };
-  return shell.box.overlaps(box_) && std::ranges::any_of(shell.facets, is_seen) &&
+  return shell.box.overlaps(box_) &&
+         std::ranges::any_of(
+             shell.facets,
+             [&](std::uint32_t f) { return side_of(soup_.facets()[f].plane, receiver_.point, counts_) > 0; }) &&
          std::ranges::all_of(shell.vertices, [&](std::uint32_t v) { return in_front(soup_.vertices()[v]); });
+}
+
+/// Whether any of what is seen of a screen is in the pyramid.
+bool PointShaft::enters_seen(std::uint32_t item) {
+  const auto facets = static_cast<std::uint32_t>(soup_.facets().size());
+  if (item < facets) return enters(item);
+  return std::ranges::any_of(soup_.shells()[item - facets].facets, [&](std::uint32_t f) {
+    return side_of(soup_.facets()[f].plane, receiver_.point, counts_) > 0 && enters(f);
+  });
 }
 
 /// The facet's edges, or those between what is seen of a convex shell and what is not.
@@ -147,35 +159,65 @@ void PointShaft::append_outline(std::uint32_t item) {
   }
 }
 
-/// Takes the first screen's cone, from the receiver, away from the region, in convex parts: outside of one edge of its
-/// outline and inside of those before.
-bool PointShaft::rest_is_hidden(const Facet& facet, std::span<const std::uint32_t> screens) {
+void PointShaft::set_screens(std::span<const std::uint32_t> items) {
+  only_entering_ = false;
+  for (const std::uint32_t item : items) {
+    if (!is_screen(item)) continue;
+    const std::size_t first = outlines_.size();
+    append_outline(item);
+    screens_.push_back({item, first, outlines_.size()});
+  }
+}
+
+/// Whether a corner of the facet that lies within the pyramid is behind or before no screen: then the facet is not
+/// hidden near it.
+bool PointShaft::sticks_out(const Facet& facet) {
+  const auto is_inside = [&](const Vec3& v) {
+    for (std::size_t i = 0; i < region_.count(); ++i) {
+      if (region_.side(i, v, counts_) <= 0) return false;
+    }
+    return true;
+  };
+  const auto misses = [&](const Vec3& v, const Screen& screen) {
+    return std::any_of(outlines_.begin() + static_cast<std::ptrdiff_t>(screen.first),
+                       outlines_.begin() + static_cast<std::ptrdiff_t>(screen.last), [&](const OutlineEdge& edge) {
+                         return orientation(receiver_.point, *edge.from, *edge.to, v, counts_) > 0;
+                       });
+  };
+  return std::ranges::any_of(soup_.corners(facet), [&](const Corner& c) {
+    return is_inside(c.at) && std::ranges::all_of(screens_, [&](const Screen& s) { return misses(c.at, s); });
+  });
+}
+
+/// Takes the screens' cones, from the receiver, away from the region one by one, each in convex parts: outside of one
+/// edge of its outline and inside of those before.
+bool PointShaft::rest_is_hidden(const Facet& facet, std::size_t screen) {
   if (cuts_left_ == 0) return false;
   --cuts_left_;
   if (!meets_region(facet)) return true;
-  if (screens.empty()) return false;
-  const std::size_t first = outlines_.size(), planes = region_.count();
-  append_outline(screens.front());
-  const std::size_t last = outlines_.size();
+  if (screen == screens_.size()) return false;
+  const std::size_t planes = region_.count();
   bool hidden = true;
-  for (std::size_t k = first; k < last && hidden; ++k) {
+  for (std::size_t k = screens_[screen].first; k < screens_[screen].last && hidden; ++k) {
     const OutlineEdge edge = outlines_[k];
     region_.add(receiver_.point, *edge.from, *edge.to);
-    hidden = rest_is_hidden(facet, screens.subspan(1));
+    hidden = rest_is_hidden(facet, screen + 1);
     region_.remove_last();
     if (hidden) region_.add(receiver_.point, *edge.to, *edge.from);
   }
   while (region_.count() > planes) region_.remove_last();
-  outlines_.resize(first);
   return hidden;
 }
 
-bool PointShaft::hidden(std::uint32_t facet, std::span<const std::uint32_t> screens) {
+bool PointShaft::hidden(std::uint32_t facet) {
   if (empty_ || facet == receiver_.facet || facet == shooter_.facet) return true;
   const Facet& f = soup_.facets()[facet];
   if (side_of(f.plane, receiver_.point, counts_) == 0) return true;
+  if (sticks_out(f)) return false;
+  if (!std::exchange(only_entering_, true))
+    std::erase_if(screens_, [&](const Screen& screen) { return !enters_seen(screen.item); });
   cuts_left_ = kMostCuts;
-  return rest_is_hidden(f, screens);
+  return rest_is_hidden(f, 0);
 }
 
 }  // namespace exitance

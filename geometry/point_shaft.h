@@ -41,15 +41,15 @@ class PointShaft {
   /// The same of a convex shell's solid, where no line starts or ends within it; false where one may.
   bool blocks(const Shell& shell);
 
-  /// Whether an item of the soup's index, a facet or a convex shell, can hide something of the pyramid from the
-  /// receiver and lies as a whole in front of the shooter's plane, so that each line that meets it from there meets it
-  /// before the shooter.
-  bool is_screen(std::uint32_t item);
+  /// Until the next reset, takes as screens those of some items of the soup's index, facets and convex shells, that can
+  /// hide something of the pyramid from the receiver and lie as a whole in front of the shooter's plane, so that each
+  /// line that meets one from there meets it before the shooter.
+  void set_screens(std::span<const std::uint32_t> items);
 
-  /// Whether every line of the pyramid that crosses a facet meets one of the screens (is_screen): before the facet or
-  /// behind it, they hide there together what the facet would. True, too, of a facet that hides nothing, as it does not
-  /// enter or is seen edge-on. Exact when true; false also where that would take too long to find.
-  bool hidden(std::uint32_t facet, std::span<const std::uint32_t> screens);
+  /// Whether every line of the pyramid that crosses a facet meets one of the screens: before the facet or behind it,
+  /// they hide there together what the facet would. True, too, of a facet that hides nothing, as it does not enter or
+  /// is seen edge-on. Exact when true; false also where that would take too long to find.
+  bool hidden(std::uint32_t facet);
 
   /// Half-spaces and a box that hold the pyramid, for searches.
   std::span<const HalfSpace> half_spaces();
@@ -60,10 +60,17 @@ class PointShaft {
   struct OutlineEdge {
     const Vec3 *from, *to;
   };
+  struct Screen {
+    std::uint32_t item;
+    std::size_t first, last;  ///< its edges
+  };
 
   bool meets_region(const Facet& facet);
+  bool is_screen(std::uint32_t item);
+  bool enters_seen(std::uint32_t item);
   void append_outline(std::uint32_t item);
-  bool rest_is_hidden(const Facet& facet, std::span<const std::uint32_t> screens);
+  bool sticks_out(const Facet& facet);
+  bool rest_is_hidden(const Facet& facet, std::size_t screen);
 
   const PolygonSoup& soup_;
   Receiver receiver_;
@@ -73,7 +80,9 @@ class PointShaft {
   bool empty_ = true;
   OpenRegion region_;
   std::vector<HalfSpace> half_spaces_;
-  std::vector<OutlineEdge> outlines_;  ///< of the screens that the region is cut by
+  std::vector<OutlineEdge> outlines_;  ///< of the screens
+  std::vector<Screen> screens_;
+  bool only_entering_ = false;  ///< whether those are left out that have no part in the pyramid
   std::uint32_t cuts_left_ = 0;
   StageCounts counts_;
 };

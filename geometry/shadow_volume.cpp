@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 namespace exitance {
@@ -114,6 +113,15 @@ bool ShadowVolume::lies_over(const Receiver& receiver) const {
   });
 }
 
+/// Whether other facets of the object hide all that a facet hides from a point: those in front of it of the same convex
+/// solid.
+bool ShadowVolume::is_behind_its_shell(std::uint32_t facet, const Vec3& from) {
+  const PolygonSoup& soup = caster_.soup();
+  const Facet& f = soup.facets()[facet];
+  return f.shell != kNone && std::ranges::binary_search(caster_.convex_shells(), f.shell) &&
+         side_of(f.plane, from, counts_) < 0 && !soup.shells()[f.shell].box.contains(from, 0);
+}
+
 Shade ShadowVolume::at(const Receiver& receiver, std::span<const std::uint32_t> screens) {
   const PolygonSoup& soup = caster_.soup();
   point_shaft_.reset(receiver, shooter_);
@@ -122,15 +130,12 @@ Shade ShadowVolume::at(const Receiver& receiver, std::span<const std::uint32_t> 
   found_.clear();
   if (caster_.box().overlaps(point_shaft_.box()))
     caster_.index().find(point_shaft_.half_spaces(), point_shaft_.box(), found_);
-  screens_.clear();
-  bool looked = screens.empty();
+  bool has_screens = screens.empty();
   const auto takes = [&](std::uint32_t k) {
     const std::uint32_t facet = caster_.first() + k;
-    if (!point_shaft_.enters(facet)) return false;
-    if (!std::exchange(looked, true))
-      std::ranges::copy_if(screens, std::back_inserter(screens_),
-                           [&](std::uint32_t s) { return point_shaft_.is_screen(s); });
-    return screens_.empty() || !point_shaft_.hidden(facet, screens_);
+    if (is_behind_its_shell(facet, receiver.point) || !point_shaft_.enters(facet)) return false;
+    if (!std::exchange(has_screens, true)) point_shaft_.set_screens(screens);
+    return screens.empty() || !point_shaft_.hidden(facet);
   };
   if (std::ranges::any_of(found_, takes)) {
     const auto blocked = std::ranges::any_of(caster_.convex_shells(), [&](std::uint32_t s) {

@@ -76,6 +76,7 @@ class ShadowVolume {
 
  private:
   bool lies_over(const Receiver& receiver) const;
+  bool is_behind_its_shell(std::uint32_t facet, const Vec3& from);
 
   const ShadowCaster& caster_;
   ShaftEnd shooter_;
@@ -84,7 +85,7 @@ class ShadowVolume {
   std::vector<HalfSpace> region_;
   PointShaft point_shaft_;
   Shaft shaft_;
-  std::vector<std::uint32_t> found_, screens_;
+  std::vector<std::uint32_t> found_;
   StageCounts counts_;
 };
 
