@@ -33,10 +33,13 @@ struct Race {
   double until = 1e-3;        ///< a contender ends when its error on the 1 % is below
   double most_seconds = 1e9;  ///< of the processor, likewise
   std::uint64_t column_memory = DynamicRadiosity::kColumnMemory;  ///< for form factors that are kept [bytes]
+  std::vector<std::string> methods = {};                          ///< the contenders wanted; empty: all
 };
 
 /// Errors below which a contender counts as there.
 inline constexpr double kGoal = 0.05;
+/// Of the power of the sources: below it strategy one shoots what has been gathered on.
+inline constexpr double kThreshold = 1e-4;
 
 class RaceTrack {
  public:
@@ -67,9 +70,14 @@ class RaceTrack {
     draw(before.solution(), was_, "converged_before");
     draw(after.solution(), reference_, "converged_after");
 
+    const auto race = [&](const std::string& name, const SessionOptions& options) {
+      if (!race_.methods.empty() && std::ranges::find(race_.methods, name) == race_.methods.end()) return;
+      follow(name, options.method == UpdateMethod::scratch ? EditSession(race_.scene.scene, options)
+                                                           : EditSession(before, options));
+    };
     SessionOptions options = options_;
     options.method = UpdateMethod::scratch;
-    follow("scratch", EditSession(race_.scene.scene, options));
+    race("scratch", options);
     options.method = UpdateMethod::redistribute;
     for (const auto& [strategy, first] : {std::pair{Strategy::redistribute_first, "strategy 1"},
                                           std::pair{Strategy::interleave, "strategy 2"}}) {
@@ -77,11 +85,20 @@ class RaceTrack {
                                          std::pair{ImportanceOptions::Kind::exact, "exact"}}) {
         options.strategy = strategy;
         options.importance.kind = kind;
-        follow(fmt::format("{} {}", first, second), EditSession(before, options));
+        race(fmt::format("{} {}", first, second), options);
       }
     }
+    options.importance.kind = ImportanceOptions::Kind::estimated;
+    options.object_terms = ObjectTerms::gathered;
+    race("strategy 2 gathered", options);
+    options.strategy = Strategy::redistribute_first;
+    options.threshold = kThreshold;
+    race("strategy 1 gathered", options);
+    options = options_;
     options.method = UpdateMethod::restart;
-    follow("restart", EditSession(before, options));
+    options.strategy = Strategy::interleave;
+    options.importance.kind = ImportanceOptions::Kind::exact;
+    race("restart", options);
     for (auto& row : summary.rows) row.push_back(times_faster(row[2]));
     summary.header.push_back("times_faster_than_scratch");
     write();
@@ -187,7 +204,7 @@ class RaceTrack {
       budget.interrupted = [&] { return seconds + clock.cpu_seconds() > race_.most_seconds; };
       const SessionWork done = session.work(budget);
       seconds += clock.cpu_seconds();
-      shots += done.propagations + done.redistributions;
+      shots += done.shots();
       redistributions += done.redistributions;
       work += done.redistribution;
       finished = done.finished || done.interrupted;
@@ -311,8 +328,12 @@ int run_race(int argc, char** argv, const char* what, const MakeRace& race) {
   CLI::App app{what};
   ExperimentOptions wanted(app, "tables, plots and pictures", "A small mesh",
                                 "Compare errors with this table; exit code 1 where they differ");
+  std::vector<std::string> methods;
+  app.add_option("--methods", methods, "Contenders, separated by commas; all without it")->delimiter(',');
   CLI11_PARSE(app, argc, argv);
-  RaceTrack track(race(wanted.reduced()), wanted.writes() ? wanted.folder() : std::filesystem::path());
+  Race asked = race(wanted.reduced());
+  asked.methods = methods;
+  RaceTrack track(std::move(asked), wanted.writes() ? wanted.folder() : std::filesystem::path());
   track.run();
   return wanted.check(track.results, 2, 0.02,
                              {"cpu_seconds", "redistribution_tests", "idle_tests", "idle_patch_tests"});
