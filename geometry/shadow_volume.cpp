@@ -130,11 +130,11 @@ Shade ShadowVolume::at(const Receiver& receiver, std::span<const std::uint32_t> 
   found_.clear();
   if (caster_.box().overlaps(point_shaft_.box()))
     caster_.index().find(point_shaft_.half_spaces(), point_shaft_.box(), found_);
-  bool has_screens = screens.empty();
+  bool screens_are_set = screens.empty();
   const auto takes = [&](std::uint32_t k) {
     const std::uint32_t facet = caster_.first() + k;
     if (is_behind_its_shell(facet, receiver.point) || !point_shaft_.enters(facet)) return false;
-    if (!std::exchange(has_screens, true)) point_shaft_.set_screens(screens);
+    if (!std::exchange(screens_are_set, true)) point_shaft_.set_screens(screens);
     return screens.empty() || !point_shaft_.hidden(facet);
   };
   if (std::ranges::any_of(found_, takes)) {

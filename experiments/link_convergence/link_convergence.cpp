@@ -37,7 +37,7 @@ std::vector<Question> questions(bool reduced) {
   if (reduced) return {{"furnace_cube", "furnace_cube reduced", 0, 0.4, {0.1, 0.03, 0.01}, 2.0, 0}};
   return {{"furnace_cube", "furnace_cube", 0, 0.4, {0.1, 0.03, 0.01, 0.003}, 2.0, 0},
           {"furnace_cube", "furnace_cube of 384 squares", 0.004, 0, {0.1, 0.03, 0.01, 0.003, 0.001}, 2.0, 0},
-          {"furnace_cube", "furnace_cube of 1536 squares", 0.0009, 0, {0.03, 0.01, 0.003, 0.001}, 2.0, 0},
+          {"furnace_cube", "furnace_cube of 6144 squares", 0.0009, 0, {0.03, 0.01, 0.003, 0.001}, 2.0, 0},
           {"box", "box", 0, 18, {1e-2, 3e-3, 1e-3, 3e-4, 1e-4}, {}, 2e-3},
           {"cornell_box_closed", "cornell_box_closed", 0, 0.3, {3e-2, 1e-2, 3e-3, 1e-3, 3e-4}, {}, 5e-3}};
 }

@@ -20,6 +20,7 @@
 #include "src/output/manifest.h"
 #include "src/output/result_folder.h"
 #include "src/output/whole_file.h"
+#include "src/scene/input_error.h"
 #include "src/stress/stress_table.h"
 
 namespace exitance {
@@ -37,13 +38,19 @@ std::string lists() {
   return text;
 }
 
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (const QuestionKind& kind : question_kinds()) names.push_back(kind.name);
+  return names;
+}
+
 class Stress {
  public:
   explicit Stress(CLI::App& verb) : verb_(verb) {
     verb.add_option("--family", options_.families, "Families of questions, separated by commas; all without it")
         ->delimiter(',');
     verb.add_option("--question", kind_, "What is asked about the same scenes")
-        ->check(CLI::IsMember({"points", "shafts", "shadows", "pairs"}))
+        ->check(CLI::IsMember(kind_names()))
         ->capture_default_str();
     verb.add_option("--count", options_.count, "Questions, spread over families and magnitudes")
         ->check(whole_number_between(1))
@@ -136,6 +143,11 @@ class Stress {
                         {"seed", std::to_string(options_.seed)},
                         {"first", std::to_string(options_.first)}};
     options_.resumed = read_stress_state(unfinished(), key);
+    if (options_.resumed && options_.resumed->done > options_.count) {
+      throw InputError(unfinished().string(), 0,
+                       fmt::format("holds {} questions already; give --count {} or more, or remove it",
+                                   options_.resumed->done, options_.resumed->done));
+    }
     options_.save = [this, key](const StressState& state) { write_stress_state(unfinished(), key, state); };
   }
 

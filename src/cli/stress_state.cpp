@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "src/cli/json_text.h"
@@ -27,6 +28,11 @@ Json json_of(const StressTally& t) {
           {"properties", properties}};
 }
 
+/// JSON has no infinity: it is written as null.
+double number_of(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
+}
+
 StressTally tally_of(const Json& json) {
   const Json &seen = json.at("seen"), &worst = json.at("worst"), &stages = json.at("stages");
   StressTally t{.questions = json.at("questions"),
@@ -35,14 +41,14 @@ StressTally tally_of(const Json& json) {
                 .all = seen.at(2),
                 .unjudged = json.at("unjudged"),
                 .wrong = json.at("wrong"),
-                .worst_error = worst.at(0),
-                .worst_relative_error = worst.at(1),
-                .worst_margin = worst.at(2),
+                .worst_error = number_of(worst.at(0)),
+                .worst_relative_error = number_of(worst.at(1)),
+                .worst_margin = number_of(worst.at(2)),
                 .stages = {stages.at(0), stages.at(1), stages.at(2)},
                 .extended = json.at("extended"),
                 .seconds = json.at("seconds"),
                 .properties = {}};
-  for (const Json& p : json.at("properties")) t.properties.push_back({p.at(0), p.at(1), p.at(2)});
+  for (const Json& p : json.at("properties")) t.properties.push_back({p.at(0), p.at(1), number_of(p.at(2))});
   return t;
 }
 

@@ -65,7 +65,7 @@ const QuestionKind& question_kind_named(const std::string& name) {
 std::vector<std::string> property_names(const QuestionKind& kind) {
   std::vector<std::string> names;
   for (const Property& property : kind.properties()) names.push_back(property.name);
-  if (kind.sums_to_one) names.emplace_back("closure");
+  if (kind.sums_to_one) names.emplace_back(kClosure);
   return names;
 }
 

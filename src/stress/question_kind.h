@@ -32,5 +32,6 @@ const QuestionKind& question_kind_named(const std::string& name);
 
 /// Of a kind's properties, and "closure" where it has that.
 std::vector<std::string> property_names(const QuestionKind& kind);
+inline constexpr const char* kClosure = "closure";  ///< the last of them, where what is seen sums to one
 
 }  // namespace exitance

@@ -20,7 +20,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 const char* const kAnswer = "answer";
-const char* const kClosure = "closure";
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
