@@ -26,12 +26,12 @@ namespace exitance {
 
 struct Race {
   std::string title = {};
-  DynamicScene scene = {};    ///< whose first event is the change
+  DynamicScene scene = {};  ///< whose first event is the change
   MeshOptions mesh = {};
-  double tolerance = 1e-6;    ///< of the solutions before and after, of max B
+  double tolerance = 1e-6;                   ///< of the solutions before and after, of max B
   std::vector<std::uint64_t> pictured = {};  ///< shots after which pictures are made
-  double until = 1e-3;        ///< a contender ends when its error on the 1 % is below
-  double most_seconds = 1e9;  ///< of the processor, likewise
+  double until = 1e-3;                       ///< a contender ends when its error on the 1 % is below
+  double most_seconds = 1e9;                 ///< of the processor, likewise
   std::uint64_t column_memory = DynamicRadiosity::kColumnMemory;  ///< for form factors that are kept [bytes]
   std::vector<std::string> methods = {};                          ///< the contenders wanted; empty: all
 };
@@ -79,8 +79,8 @@ class RaceTrack {
     options.method = UpdateMethod::scratch;
     race("scratch", options);
     options.method = UpdateMethod::redistribute;
-    for (const auto& [strategy, first] : {std::pair{Strategy::redistribute_first, "strategy 1"},
-                                          std::pair{Strategy::interleave, "strategy 2"}}) {
+    for (const auto& [strategy, first] :
+         {std::pair{Strategy::redistribute_first, "strategy 1"}, std::pair{Strategy::interleave, "strategy 2"}}) {
       for (const auto& [kind, second] : {std::pair{ImportanceOptions::Kind::estimated, "estimated"},
                                          std::pair{ImportanceOptions::Kind::exact, "exact"}}) {
         options.strategy = strategy;
@@ -118,10 +118,10 @@ class RaceTrack {
     }
   }
 
-  CsvTable results{{"method", "shots", "redistributions", "error", "error_worst_1_percent",
-                    "error_worst_1_percent_of_room", "error_to_finer_worst_1_percent", "redistribution_tests",
-                    "idle_tests", "idle_patch_tests", "cpu_seconds"},
-                   {}};
+  CsvTable results{
+      {"method", "shots", "redistributions", "error", "error_worst_1_percent", "error_worst_1_percent_of_room",
+       "error_to_finer_worst_1_percent", "redistribution_tests", "idle_tests", "idle_patch_tests", "cpu_seconds"},
+      {}};
   CsvTable summary{{"method", "shots_to_5_percent", "cpu_seconds_to_5_percent"}, {}};
   CsvTable importance{{"estimate", "shots", "share_of_ideal"}, {}};
   CsvTable weakness{{"patches_that", "patches", "share_of_energy", "median_factor", "factor_of_worst_tenth"}, {}};
@@ -177,9 +177,9 @@ class RaceTrack {
       results.rows.push_back({name, fmt::format("{}", shots), fmt::format("{}", redistributions), digits(error.all),
                               digits(error.worst_1_percent),
                               digits(error_over(state.version(), changed_of_room_, reference_, B)),
-                              digits(error_over(state.version(), changed_, finer_, B)), fmt::format("{}", work.visibility_tests),
-                              fmt::format("{}", work.idle_tests), fmt::format("{}", work.idle_patch_tests),
-                              fmt::format("{:.3g}", seconds)});
+                              digits(error_over(state.version(), changed_, finer_, B)),
+                              fmt::format("{}", work.visibility_tests), fmt::format("{}", work.idle_tests),
+                              fmt::format("{}", work.idle_patch_tests), fmt::format("{:.3g}", seconds)});
       by_time.points.emplace_back(seconds, error.worst_1_percent);
       by_shots.points.emplace_back(static_cast<double>(shots), error.worst_1_percent);
       if (error.worst_1_percent > kGoal) there.reset();
@@ -303,16 +303,14 @@ class RaceTrack {
     add_class("are farther than two sizes", [&](std::uint32_t p) { return away(p) > 2 * size; });
     add_class("are farther than two sizes and estimated within a factor of two",
               [&](std::uint32_t p) { return away(p) > 2 * size && !is_half_hidden(p); });
-    add_class("stand straight above or below",
-              [&](std::uint32_t p) {
-                const Vec3 d = version.mesh().elements[version.mesh().patches[p].element_first].sample - middle;
-                return std::fabs(d.z) > 0.8 * norm(d);
-              });
-    add_class("stand level with it",
-              [&](std::uint32_t p) {
-                const Vec3 d = version.mesh().elements[version.mesh().patches[p].element_first].sample - middle;
-                return std::fabs(d.z) < 0.3 * norm(d);
-              });
+    add_class("stand straight above or below", [&](std::uint32_t p) {
+      const Vec3 d = version.mesh().elements[version.mesh().patches[p].element_first].sample - middle;
+      return std::fabs(d.z) > 0.8 * norm(d);
+    });
+    add_class("stand level with it", [&](std::uint32_t p) {
+      const Vec3 d = version.mesh().elements[version.mesh().patches[p].element_first].sample - middle;
+      return std::fabs(d.z) < 0.3 * norm(d);
+    });
   }
 
   Race race_;
@@ -327,7 +325,7 @@ template <class MakeRace>
 int run_race(int argc, char** argv, const char* what, const MakeRace& race) {
   CLI::App app{what};
   ExperimentOptions wanted(app, "tables, plots and pictures", "A small mesh",
-                                "Compare errors with this table; exit code 1 where they differ");
+                           "Compare errors with this table; exit code 1 where they differ");
   std::vector<std::string> methods;
   app.add_option("--methods", methods, "Contenders, separated by commas; all without it")->delimiter(',');
   CLI11_PARSE(app, argc, argv);
@@ -336,7 +334,7 @@ int run_race(int argc, char** argv, const char* what, const MakeRace& race) {
   RaceTrack track(std::move(asked), wanted.writes() ? wanted.folder() : std::filesystem::path());
   track.run();
   return wanted.check(track.results, 2, 0.02,
-                             {"cpu_seconds", "redistribution_tests", "idle_tests", "idle_patch_tests"});
+                      {"cpu_seconds", "redistribution_tests", "idle_tests", "idle_patch_tests"});
 }
 
 }  // namespace exitance

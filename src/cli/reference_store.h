@@ -12,8 +12,8 @@
 
 namespace exitance {
 
-/// Solutions by what they are solutions of: bit for bit the same surfaces, materials, patches and sample points. Those of
-/// a run are computed once; with a file those of earlier runs are found again.
+/// Solutions by what they are solutions of: bit for bit the same surfaces, materials, patches and sample points. Those
+/// of a run are computed once; with a file those of earlier runs are found again.
 class ReferenceStore {
  public:
   /// The file may not be there yet; empty: none. Throws InputError where it is something else, or cannot be made.

@@ -80,7 +80,11 @@ std::optional<StressState> read_stress_state(const std::filesystem::path& file, 
 }
 
 void write_stress_state(const std::filesystem::path& file, const StressKey& key, const StressState& state) {
-  Json json{{"key", key}, {"done", state.done}, {"tallies", Json::array()}, {"found", Json::array()}, {"unjudged", Json::array()}};
+  Json json{{"key", key},
+            {"done", state.done},
+            {"tallies", Json::array()},
+            {"found", Json::array()},
+            {"unjudged", Json::array()}};
   for (const StressTally& tally : state.tallies) json["tallies"].push_back(json_of(tally));
   for (const StressFinding& f : state.found) json["found"].push_back({f.number, f.contender, f.what, f.threw});
   for (const StressUnjudged& u : state.unjudged) json["unjudged"].push_back({u.number, u.exception});

@@ -211,7 +211,8 @@ std::shared_ptr<const FormFactorColumn> DynamicRadiosity::present_column(std::ui
   if (column && column->version == shared_version()) return column;
   if (column && since(column->version).keeps(patch)) {
     const VersionDifference& difference = since(column->version);
-    const auto changes = difference.column(patch, VersionDifference::Search::shadow_volumes, column.get(), gathered_rows_, work);
+    const auto changes =
+        difference.column(patch, VersionDifference::Search::shadow_volumes, column.get(), gathered_rows_, work);
     column = std::make_shared<const FormFactorColumn>(changed_column(*column, difference, changes));
   } else {
     column = std::make_shared<const FormFactorColumn>(make_column(shared_version(), patch, work.visibility_tests));
@@ -246,7 +247,8 @@ DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t pat
   const VersionDifference& difference = since(layer.version);
   auto known = columns_.find(patch);
   if (known && known->version != layer.version) known.reset();
-  const std::vector<FormFactorChange> changes = difference.column(patch, search, known.get(), gathered_rows_, shot.work);
+  const std::vector<FormFactorChange> changes =
+      difference.column(patch, search, known.get(), gathered_rows_, shot.work);
   if (known && difference.keeps(patch))
     columns_.put(patch, std::make_shared<const FormFactorColumn>(changed_column(*known, difference, changes)));
   std::vector<double> high(bands_), low(bands_);

@@ -39,10 +39,10 @@ struct DynamicShot {
 
 /// What has been shot before a change and is still to be redistributed: an entry of the paper's log.
 struct PendingChange {
-  std::string name;            ///< what changed then
-  std::size_t patches = 0;     ///< that have yet to redistribute what they shot before
-  std::uint32_t patch = 0;     ///< the one with the most energy left to redistribute
-  double largest_energy = 0;   ///< its, as it is ranked [W or lm]
+  std::string name;           ///< what changed then
+  std::size_t patches = 0;    ///< that have yet to redistribute what they shot before
+  std::uint32_t patch = 0;    ///< the one with the most energy left to redistribute
+  double largest_energy = 0;  ///< its, as it is ranked [W or lm]
 };
 
 /// The state of a solution. At any time, for every element i that is there,
@@ -68,8 +68,8 @@ struct PendingChange {
 /// what has been gathered and not yet been shot. A redistribution shot then only turns it into H_i; a new change of
 /// geometry drops it.
 ///
-/// A propagation shot takes the patch's column of form factors as it was kept, brought to the present version by what has
-/// changed of it since, or computes it.
+/// A propagation shot takes the patch's column of form factors as it was kept, brought to the present version by what
+/// has changed of it since, or computes it.
 ///
 /// Copies are independent and share versions. Any number of threads gives the same bits.
 class DynamicRadiosity {
@@ -93,8 +93,9 @@ class DynamicRadiosity {
   /// Forgets all that was shot, and all form factors.
   void start_over();
 
-  /// What was shot in older versions counts as shot in the present one, and what changed objects shot as gone with them:
-  /// nothing is pending any more, and what was not redistributed stays wrong (the paper's solution without a log).
+  /// What was shot in older versions counts as shot in the present one, and what changed objects shot as gone with
+  /// them: nothing is pending any more, and what was not redistributed stays wrong (the paper's solution without a
+  /// log).
   void forget_changes();
 
   /// Shoots all of a patch's unshot radiosity.
@@ -150,8 +151,8 @@ class DynamicRadiosity {
  private:
   struct Layer {
     std::shared_ptr<const SceneVersion> version;
-    std::string name;                 ///< of the change that ended it
-    SharedRows<CompensatedSum> shot;  ///< by patch and band
+    std::string name;                                       ///< of the change that ended it
+    SharedRows<CompensatedSum> shot;                        ///< by patch and band
     std::shared_ptr<const std::vector<double>> importance;  ///< by patch; of all but the present one
   };
 
@@ -170,15 +171,15 @@ class DynamicRadiosity {
   bool is_zero(const Layer& layer, std::uint32_t patch) const;
 
   std::uint32_t bands_;
-  std::vector<double> weights_;     // of bands
-  std::vector<Layer> layers_;       // the present one last
-  std::vector<CompensatedSum> H_;   // by element and band
+  std::vector<double> weights_;                // of bands
+  std::vector<Layer> layers_;                  // the present one last
+  std::vector<CompensatedSum> H_;              // by element and band
   std::optional<std::uint32_t> changed_last_;  // the object that gathers, if it is there
   std::uint32_t gathered_patches_ = 0;         // the first of its
   ObjectRows gathered_rows_;                   // of their elements
   std::vector<CompensatedSum> G_;              // by element of the object and band; empty: 0
-  std::vector<double> rho_, E_;     // by patch and band
-  std::vector<double> B_, unshot_;  // by patch and band
+  std::vector<double> rho_, E_;                // by patch and band
+  std::vector<double> B_, unshot_;             // by patch and band
   ImportanceOptions importance_;
   ColumnStore columns_;
   std::vector<std::shared_ptr<const VersionDifference>> differences_;  // to the present version, where asked for

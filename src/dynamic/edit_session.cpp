@@ -100,8 +100,7 @@ void EditSession::apply(const Edit& edit) {
 
 /// One shot, the one that comes next; false when nothing is left to do.
 bool EditSession::step(DynamicRadiosity& of, SessionWork& work) {
-  const bool gathers =
-      options_.object_terms == ObjectTerms::gathered && options_.method == UpdateMethod::redistribute;
+  const bool gathers = options_.object_terms == ObjectTerms::gathered && options_.method == UpdateMethod::redistribute;
   const auto propagate = [&](std::uint32_t patch) { count(of.propagate(patch), work); };
   if (edited_) {
     const auto emitter = of.strongest_of(*edited_);

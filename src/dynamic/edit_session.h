@@ -14,9 +14,9 @@ namespace exitance {
 
 /// What is done after an edit.
 enum class UpdateMethod : std::uint8_t {
-  scratch,      ///< progressive refinement from nothing
-  restart,      ///< progressive refinement from the previous solution: without shadow volumes every patch's whole column
-                ///< is computed by both versions, in order of all energy that it has shot
+  scratch,  ///< progressive refinement from nothing
+  restart,  ///< progressive refinement from the previous solution: without shadow volumes every patch's whole column
+            ///< is computed by both versions, in order of all energy that it has shot
   redistribute  ///< redistribution
 };
 
@@ -110,9 +110,9 @@ class EditSession {
 
   SessionOptions options_;
   EditedScene scene_;
-  DynamicRadiosity base_;                   ///< without the selected object, if there is one
-  std::optional<DynamicRadiosity> shown_;   ///< with it
-  std::optional<std::uint32_t> edited_;     ///< the object whose emitters come first
+  DynamicRadiosity base_;                  ///< without the selected object, if there is one
+  std::optional<DynamicRadiosity> shown_;  ///< with it
+  std::optional<std::uint32_t> edited_;    ///< the object whose emitters come first
 };
 
 }  // namespace exitance

@@ -17,7 +17,7 @@ struct FormFactorColumn;  // form_factor_column.h
 struct FormFactorChange {
   std::uint32_t element = 0;
   double before = 0, after = 0;
-  double error = 0;  ///< bound of that of after − before, of what was computed for it
+  double error = 0;         ///< bound of that of after − before, of what was computed for it
   std::uint32_t tests = 0;  ///< form factors that were computed for it
 };
 

@@ -34,7 +34,7 @@ struct EntryErrors {
 struct WorstPair {
   std::uint32_t i = 0, j = 0;
   double F = 0, truth = 0;
-  double truth_error = 0;                ///< of what is taken for true
+  double truth_error = 0;                     ///< of what is taken for true
   std::optional<double> standard_error = {};  ///< that is claimed of F
 };
 

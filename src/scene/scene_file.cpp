@@ -167,8 +167,9 @@ class SceneFile {
         if (has_placement(table)) {
           event.edit.placement = read_placement(table);
         } else if (event.edit.operation == Operation::move) {
-          table.fail(table.line(), "a move needs \"translate\", \"rotate\" or \"scale\", from where the object was "
-                                   "given; add one");
+          table.fail(table.line(),
+                     "a move needs \"translate\", \"rotate\" or \"scale\", from where the object was "
+                     "given; add one");
         }
         break;
       case Operation::reshape:

@@ -43,8 +43,7 @@ TEST(Dynamic, FramesTellWhatWasDoneAndHowFarItIs) {
 TEST(Dynamic, BudgetsStopReplaysRepeatAndTheLogIsWorkedOff) {
   const ScratchFolder scratch;
   const auto frames_of = [&](const std::string& options, const char* name) {
-    const Outcome outcome =
-        run("dynamic " + data("cube.toml") + kQuick + options + " -o " + (scratch / name).string());
+    const Outcome outcome = run("dynamic " + data("cube.toml") + kQuick + options + " -o " + (scratch / name).string());
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return json_in(scratch / name / "frames.json");
   };

@@ -157,7 +157,8 @@ TEST(EditSession, StrategyOneRedistributesBeforeItPropagates) {
   EXPECT_EQ(session.work(some).redistributions, 20u);
 }
 
-// Only what had been shot when the change came is redistributed: a change before anything was shot leaves nothing to do.
+// Only what had been shot when the change came is redistributed: a change before anything was shot leaves nothing to
+// do.
 TEST(EditSession, NothingIsRedistributedOfWhatWasNotShot) {
   EditSession session(test_room(), plain());
   session.apply(moved(1, {0.5, 0, 0}));

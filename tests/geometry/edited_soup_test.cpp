@@ -239,7 +239,8 @@ TEST_F(EditedRoom, BranchesAreIndependent) {
   check(*second, ranges, other);
 }
 
-/// What soups that are gone have brought, and those that were given up, makes room for others; what is left is as it was.
+/// What soups that are gone have brought, and those that were given up, makes room for others; what is left is as it
+/// was.
 TEST_F(EditedRoom, SoupsThatAreGoneMakeRoomForOthers) {
   const Objects::List all = objects_.all();
   const PolygonSoup base = fresh(all);

@@ -150,8 +150,8 @@ TEST(ShadowVolume, NeverMissesASamplePointAndTellsTheUmbra) {
   EXPECT_GT(changed, 300u);
   EXPECT_GT(counts[0], 300u);
   EXPECT_GT(counts[2], 20u);
-  EXPECT_LT(static_cast<double>(idle), 0.1 * static_cast<double>(changed)) << "few that did not change are found: " << idle << " beside "
-                                                                     << changed;
+  EXPECT_LT(static_cast<double>(idle), 0.1 * static_cast<double>(changed))
+      << "few that did not change are found: " << idle << " beside " << changed;
 }
 
 /// Screens of a kind under a small object: two boxes and a sheet that touch, overlap or leave gaps.
@@ -160,7 +160,8 @@ Faces screens_of(Random& random) {
   const double gap = random.below(3) == 0 ? 0.05 : 0, shift = 0.125 * (random.below(3) - 1.0);
   add_box(faces, {-0.75, -0.75, 0.5}, {shift - gap, 0.75, 0.6});
   add_box(faces, {shift, -0.75, 0.5}, {0.75, 0.125, 0.6 + 0.1 * random.below(2)});
-  faces.push_back({{{shift - 0.25, 0.125, 0.55}, {0.75, 0.125, 0.55}, {0.75, 0.75, 0.7}, {shift - 0.25, 0.75, 0.7}}, {}});
+  faces.push_back(
+      {{{shift - 0.25, 0.125, 0.55}, {0.75, 0.125, 0.55}, {0.75, 0.75, 0.7}, {shift - 0.25, 0.75, 0.7}}, {}});
   return faces;
 }
 
@@ -250,7 +251,8 @@ TEST(ShadowVolume, ClassifiesPolygonsAsTheirPointsSay) {
       ++counts[static_cast<std::size_t>(shade)];
       const auto& loop = stage.with[p].outer;
       for (int i = 0; i < 20; ++i) {
-        const Vec3 at = loop[0] + random.between(0, 1) * (loop[1] - loop[0]) + random.between(0, 1) * (loop[3] - loop[0]);
+        const Vec3 at =
+            loop[0] + random.between(0, 1) * (loop[1] - loop[0]) + random.between(0, 1) * (loop[3] - loop[0]);
         const Vec3 normal{0, 0, 1};
         view.look_from({at, normal, facet});
         free_view.look_from({at, normal, free.first_facet(p - (stage.last - stage.first))});
