@@ -132,7 +132,6 @@ class Dynamic {
       how.path = path_;
       if (budget_ms_) how.budget = *budget_ms_ / 1000;
       how.work_off = work_off_;
-      how.interruptible = time_limit_.has_value();
       how.references = reference_;
       how.images = images_;
       how.image_size = image_size_;

@@ -36,9 +36,9 @@ class Frames {
 
   LinksEnd follow() {
     const std::vector<Event>& events = given_.events;
-    bool left = false;  // something, by the last update
     const LinkUpdate built = links_.build(options_.stop);
     add(events.empty() ? 0 : std::min(0.0, events.front().time), {}, built);
+    bool left = false, stopped = built.stopped;  // something, by the last update; any that built everything
     for (std::size_t next = 0; next < events.size() && !(options_.stop && options_.stop());) {
       const double time = events[next].time;
       std::vector<Edit> edits;
@@ -54,13 +54,14 @@ class Frames {
       for (const auto& [object, line] : lines) warn(object, line);
       add(time, names, update);
       left = update.pairs_left > 0;
+      stopped = stopped || update.stopped;
     }
     if (left && options_.work_off && !(options_.stop && options_.stop())) {
       const LinkUpdate rest = links_.work_off(interruption(false));
       add(events.back().time, {"work off"}, rest);
       left = rest.pairs_left > 0;
     }
-    const bool unfinished = built.stopped || (left && !options_.budget);
+    const bool unfinished = stopped || (left && !options_.budget);
     return unfinished ? LinksEnd::unfinished : LinksEnd::finished;
   }
 
@@ -69,11 +70,10 @@ class Frames {
   LinkInterruption interruption(bool by_budget = true) const {
     LinkInterruption how;
     by_budget = by_budget && options_.budget;
-    if (!by_budget && !options_.interruptible) return how;
     const auto start = std::chrono::steady_clock::now();
     how.stop = [this, start, by_budget] {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-      return (by_budget && spent.count() >= *options_.budget) || (options_.interruptible && options_.stop());
+      return (by_budget && spent.count() >= *options_.budget) || (options_.stop && options_.stop());
     };
     return how;
   }

@@ -29,8 +29,7 @@ struct LinkFrameOptions {
   bool references = true;          ///< whether errors are found
   bool images = true;              ///< whether pictures and VTP files are written
   std::uint32_t image_size = 800;  ///< of the pictures, in pixels
-  std::function<bool()> stop;      ///< asked between frames; also within them where they can be interrupted
-  bool interruptible = false;      ///< whether stop ends updates, too
+  std::function<bool()> stop;      ///< asked between frames and within them, by any thread
   std::function<void(const LinkFrames&)> finished;  ///< told after each frame what there is so far
 };
 

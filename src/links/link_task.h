@@ -43,9 +43,9 @@ struct LinkTask {
   /// How many links the index may get beyond those that it has.
   std::uint64_t most_links = std::numeric_limits<std::uint64_t>::max();
   /// Asked by any thread before each link that refinement (the scope) would divide: whether none is to be divided any
-  /// more. Of all, hierarchical and significant, asked now and then: whether what has not been looked at is to be left.
+  /// more. Of others, where pairs may be left pending, asked now and then: whether what has not been looked at is left.
   std::function<bool()> stop;
-  LinkOrder order = LinkOrder::importance;  ///< of those three
+  LinkOrder order = LinkOrder::importance;  ///< where pairs may be left pending
 };
 
 struct LinkWork {

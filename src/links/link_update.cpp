@@ -203,16 +203,6 @@ class Update {
 
 }  // namespace
 
-LinkWork& LinkWork::operator+=(const LinkWork& other) {
-  links_updated += other.links_updated;
-  links_affected += other.links_affected;
-  skipped += other.skipped;
-  refined += other.refined;
-  unrefined += other.unrefined;
-  sight += other.sight;
-  return *this;
-}
-
 LinkWork update_links(const LinkTask& task, LinkIndex& links, NodeRadiosity* differences,
                       std::vector<PendingPair>* pending) {
   links.grow(task.tree->roots().size());

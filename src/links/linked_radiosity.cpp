@@ -45,6 +45,10 @@ double largest_emission(const Scene& scene) {
   return largest;
 }
 
+bool any(std::span<const std::uint8_t> of) {
+  return std::ranges::find(of, 1) != of.end();
+}
+
 LinkOptions checked(LinkOptions options, const Scene& scene) {
   const bool in_range = options.eps1 >= 0 && options.eps1 <= options.eps2 && std::isfinite(options.eps2) &&
                         options.B_eps >= 0 && options.smallest_area >= 0 && options.tolerance > 0 &&
@@ -88,6 +92,15 @@ LinkTask LinkedRadiosity::task(LinkScope scope) const {
 void LinkedRadiosity::gather(LinkUpdate& update) {
   RunClock watch;
   update.exchange = radiosity_.gather(links_, clusters_, options_.tolerance);
+  update.seconds_exchange += watch.lap();
+}
+
+/// Only what differs from before.
+void LinkedRadiosity::shoot(LinkUpdate& update) {
+  RunClock watch;
+  const std::uint64_t rounds = radiosity_.shoot(links_, options_.tolerance);
+  update.exchange.iterations += rounds;
+  update.exchange.converged = rounds < kMostExchanges;
   update.seconds_exchange += watch.lap();
 }
 
@@ -177,52 +190,93 @@ LinkUpdate LinkedRadiosity::work_off(const LinkInterruption& interruption) {
   if (!pending_) return {};
   RunClock whole;
   const LinkMethod method = pending_->method;
-  LinkUpdate update = all_or_nothing([&](LinkUpdate& made) {
-    RunClock watch;
-    Pending left = *pending_;
-    look_at_pairs(left, interruption, made);
-    made.seconds_links = watch.lap();
-    if (method == LinkMethod::hvt_peu) {
-      made.exchange.iterations = radiosity_.shoot(links_, options_.tolerance);
-      made.exchange.converged = made.exchange.iterations < kMostExchanges;
-      made.seconds_exchange = watch.lap();
-    } else {
-      gather(made);
-    }
-  });
+  LinkUpdate update = all_or_nothing([&](LinkUpdate& made) { follow(*pending_, interruption, made); });
+  RunClock watch;
   if (method != LinkMethod::hvt_peu) set_energies(links_, tree_, radiosity_.luminance());
+  update.seconds_exchange += watch.lap();
   update.seconds = whole.seconds();
   update.cpu_seconds = whole.cpu_seconds();
   return update;
 }
 
-/// Works on pairs (all that the edit concerns where there are none yet) and keeps what is left.
-void LinkedRadiosity::look_at_pairs(Pending& pending, const LinkInterruption& interruption, LinkUpdate& update) {
-  LinkTask how = task(pending.method == LinkMethod::direct ? LinkScope::all
-                      : pending.method == LinkMethod::hvt  ? LinkScope::hierarchical
-                                                           : LinkScope::significant);
-  how.before = pending.before.get();
-  how.moved = pending.moved;
-  if (!pending.luminance.empty()) how.luminance = pending.luminance;
-  how.any_stale = pending.any_stale;
-  how.stop = interruption.stop;
-  how.order = interruption.order;
-  const bool goes_on = !pending.pairs.empty() || interruption.stop;
-  update.work += update_links(how, links_, pending.method == LinkMethod::hvt_peu ? &radiosity_ : nullptr,
-                              goes_on ? &pending.pairs : nullptr);
+/// Goes on from the stage where it stands, exchanges energy, and keeps what is left.
+void LinkedRadiosity::follow(Pending pending, const LinkInterruption& interruption, LinkUpdate& update) {
+  const bool shoots = pending.method == LinkMethod::hvt_peu;
+  const LinkScope scope = shoots                                 ? LinkScope::significant
+                          : pending.method == LinkMethod::direct ? LinkScope::all
+                                                                 : LinkScope::hierarchical;
+  RunClock watch;
+  if (pending.stage == Stage::sight && look_at_pairs(pending, scope, interruption, update)) {
+    pending.stage = Stage::materials;
+    pending.before.reset();
+    pending.moved.clear();
+  }
+  radiosity_.clear_what_is_gone();
+  if (pending.stage == Stage::materials && look_at_pairs(pending, LinkScope::materials, interruption, update))
+    pending.stage = Stage::new_light;
+  update.seconds_links += watch.lap();
+  if (shoots) {
+    shoot(update);
+  } else {
+    gather(update);
+  }
+  bool done = pending.stage == Stage::new_light;
+  if (done && pending.new_light) {
+    // What has come had no light before the exchange.
+    if (pending.pairs.empty()) {
+      set_energies(links_, tree_, radiosity_.luminance());
+      pending.luminance.clear();
+    }
+    // By that light links may be worth looking at that were not before.
+    if (any_stale_) {
+      watch.lap();
+      done = look_at_pairs(pending, LinkScope::significant, interruption, update);
+      update.seconds_links += watch.lap();
+      shoot(update);
+    }
+  }
   update.pairs_left = pending.pairs.size();
-  // What is left may be stale itself.
-  any_stale_ = update.work.skipped > 0 || (any_stale_ && !pending.pairs.empty());
-  if (pending.pairs.empty()) {
+  if (done) {
     pending_.reset();
   } else {
-    if (pending.luminance.empty()) pending.luminance.assign(how.luminance.begin(), how.luminance.end());
     pending_ = std::move(pending);
   }
 }
 
-/// Marks as stale what an interrupted update left. Pairs that were to get links get one that brings nothing.
+/// Works on the pairs of a stage, all that it concerns where there are none yet. Whether none is left.
+bool LinkedRadiosity::look_at_pairs(Pending& pending, LinkScope scope, const LinkInterruption& interruption,
+                                    LinkUpdate& update) {
+  const bool refines = scope == LinkScope::materials;
+  if (!(refines ? any(pending.relit) : any(pending.moved) || any_stale_)) return true;
+  LinkTask how = task(scope);
+  how.before = pending.before.get();
+  how.moved = pending.moved;
+  how.relit = pending.relit;
+  how.stop = interruption.stop;
+  how.order = interruption.order;
+  const bool begins = pending.pairs.empty();
+  if (!pending.luminance.empty()) how.luminance = pending.luminance;
+  if (!begins) how.any_stale = pending.any_stale;
+  const LinkWork work = update_links(how, links_, pending.method == LinkMethod::hvt_peu ? &radiosity_ : nullptr,
+                                     begins && !interruption.stop ? nullptr : &pending.pairs);
+  update.work += work;
+  const bool done = pending.pairs.empty();
+  pending.skipped = pending.skipped || work.skipped > 0;
+  // What is left may be stale itself, and so may what is not refined.
+  any_stale_ = pending.skipped || (any_stale_ && (refines || !done));
+  if (done) {
+    pending.skipped = false;
+  } else {
+    if (pending.luminance.empty()) pending.luminance.assign(how.luminance.begin(), how.luminance.end());
+    pending.any_stale = how.any_stale;
+  }
+  return done;
+}
+
+/// Marks as stale what an interrupted update left, but for what was only to be refined. Pairs that were to get links
+/// get one that brings nothing.
 void LinkedRadiosity::mark_pending(LinkIndex& links) const {
+  if (pending_->stage == Stage::materials) return;
   std::vector<PendingPair> pairs = pending_->pairs;
   std::ranges::sort(pairs, {}, &PendingPair::pair);
   for (std::size_t k = 0; k < pairs.size();) {
@@ -248,19 +302,21 @@ void LinkedRadiosity::mark_pending(LinkIndex& links) const {
 void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, const LinkInterruption& interruption,
                              LinkUpdate& update) {
   RunClock watch;
+  const std::size_t objects = scene_.scene().objects.size();
+  std::vector<std::uint8_t> moved(objects), relit(objects), relit_before(objects);
+  bool new_light = false;
   if (pending_) {
     mark_pending(links_);
-    any_stale_ = true;
+    any_stale_ = any_stale_ || pending_->stage != Stage::materials;
+    new_light = pending_->new_light;
+    if (pending_->stage != Stage::new_light) relit_before = pending_->relit;
     pending_.reset();
   }
-  const std::size_t objects = scene_.scene().objects.size();
-  std::vector<std::uint8_t> moved(objects), relit(objects);
   for (const Edit& edit : edits) {
     const EditedScene::Effect effect = scene_.apply(edit);
     moved[edit.object] |= static_cast<std::uint8_t>(effect.geometry);
     relit[edit.object] |= static_cast<std::uint8_t>(effect.materials);
   }
-  const auto any = [](const std::vector<std::uint8_t>& of) { return std::ranges::find(of, 1) != of.end(); };
   std::shared_ptr<const Obstacles> before;
   if (any(moved)) {
     before = obstacles_;
@@ -279,7 +335,7 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
     LinkIndex links = std::move(links_);
     ClusterLinks clusters = std::move(clusters_);
     try {
-      update = build();
+      update = build(interruption.stop);
     } catch (...) {
       links_ = std::move(links);
       clusters_ = std::move(clusters);
@@ -289,42 +345,18 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
     return;
   }
   // What links may bring follows at once: thresholds are asked of it.
-  if (any(relit)) set_energies(links_, tree_, radiosity_.luminance());
+  if (any(relit) || new_light) set_energies(links_, tree_, radiosity_.luminance());
   update.seconds_scene = watch.lap();
 
-  NodeRadiosity* const differences = method == LinkMethod::hvt_peu ? &radiosity_ : nullptr;
-  if (any(moved) || any_stale_) {
-    Pending all;
-    all.method = method;
-    all.before = before;
-    all.moved = moved;
-    all.any_stale = any_stale_;
-    look_at_pairs(all, interruption, update);
-  }
-  radiosity_.clear_what_is_gone();
-  if (any(relit)) {
-    LinkTask materials = task(LinkScope::materials);
-    materials.relit = relit;
-    update.work += update_links(materials, links_, differences);
-  }
-  update.seconds_links = watch.lap();
-  if (differences == nullptr) return gather(update);
-
-  update.exchange.iterations = radiosity_.shoot(links_, options_.tolerance);
-  // What has come had no light before the exchange.
-  const bool new_light = any(relit) || std::ranges::any_of(edits, [](const Edit& edit) {
-                           return edit.operation == Operation::add || edit.operation == Operation::reshape;
-                         });
-  if (new_light) set_energies(links_, tree_, radiosity_.luminance());
-  // By that light links may be worth looking at that were not before.
-  if (new_light && any_stale_) {
-    const LinkWork again = update_links(task(LinkScope::significant), links_, differences);
-    any_stale_ = again.skipped > 0;
-    update.work += again;
-    update.exchange.iterations += radiosity_.shoot(links_, options_.tolerance);
-  }
-  update.exchange.converged = update.exchange.iterations < kMostExchanges;
-  update.seconds_exchange = watch.lap();
+  for (std::size_t object = 0; object < objects; ++object) relit[object] |= relit_before[object];
+  Pending all;
+  all.method = method;
+  all.before = before;
+  all.moved = moved;
+  all.relit = relit;
+  const auto brings = [](const Edit& e) { return e.operation == Operation::add || e.operation == Operation::reshape; };
+  all.new_light = method == LinkMethod::hvt_peu && (new_light || any(relit) || std::ranges::any_of(edits, brings));
+  follow(std::move(all), interruption, update);
 }
 
 std::vector<double> LinkedRadiosity::converged() const {

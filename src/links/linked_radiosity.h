@@ -55,7 +55,9 @@ struct LinkUpdate {
 
 /// When an update ends early, and what it has done by then.
 struct LinkInterruption {
-  std::function<bool()> stop;  ///< asked now and then; what has been looked at then is exchanged all the same
+  /// Asked now and then, by any thread where everything is rebuilt; what has been looked at then is exchanged all the
+  /// same.
+  std::function<bool()> stop;
   LinkOrder order = LinkOrder::importance;
 };
 
@@ -80,7 +82,8 @@ class LinkedRadiosity {
   LinkUpdate build(const std::function<bool()>& stop = {});
 
   /// Edits that happen at once. What an interrupted update leaves keeps its links as they were, until work_off, which
-  /// leaves the links that the update would have left, or marked stale until later updates. All or nothing: throws
+  /// leaves the links that the update would have left, or marked stale until later updates. Rebuilding ends early as
+  /// build does (LinkUpdate::stopped), and nothing goes on with it. All or nothing: throws
   /// InvalidEdit, what PatchTree throws, and what `stop` does, LimitError when there would be too many links,
   /// std::invalid_argument for clusters with another method than rebuild, and is then as before. REQUIRES: built.
   LinkUpdate update(std::span<const Edit> edits, LinkMethod method, const LinkInterruption& interruption = {});
@@ -99,23 +102,34 @@ class LinkedRadiosity {
   std::vector<std::uint32_t> elements() const;
 
  private:
-  /// What an interrupted update left, and what it went by.
+  /// What an update looks at, one after the other.
+  enum class Stage : std::uint8_t {
+    sight,      ///< what objects that moved affect, and what is stale
+    materials,  ///< what brings more or less light than before
+    new_light   ///< once it was exchanged: what is stale and worth looking at by now
+  };
+  /// What an interrupted update left, and what it goes by.
   struct Pending {
     LinkMethod method = LinkMethod::hvt;
-    std::vector<PendingPair> pairs;
+    Stage stage = Stage::sight;
+    std::vector<PendingPair> pairs;  ///< of this stage; empty where they have not been sought yet
     std::shared_ptr<const Obstacles> before;
-    std::vector<std::uint8_t> moved;
-    std::vector<double> luminance;
-    bool any_stale = false;
+    std::vector<std::uint8_t> moved, relit;  ///< by object
+    std::vector<double> luminance;           ///< by which links are refined
+    bool any_stale = false;                  ///< before this stage
+    bool skipped = false;                    ///< whether this stage has left something stale
+    bool new_light = false;                  ///< of PEU: whether the edits bring light that links knew nothing of
   };
 
   LinkTask task(LinkScope scope) const;
   template <class Work>
   LinkUpdate all_or_nothing(const Work& work);
   void change(std::span<const Edit> edits, LinkMethod method, const LinkInterruption& interruption, LinkUpdate& update);
-  void look_at_pairs(Pending& pending, const LinkInterruption& interruption, LinkUpdate& update);
+  void follow(Pending pending, const LinkInterruption& interruption, LinkUpdate& update);
+  bool look_at_pairs(Pending& pending, LinkScope scope, const LinkInterruption& interruption, LinkUpdate& update);
   void mark_pending(LinkIndex& links) const;
   void gather(LinkUpdate& update);
+  void shoot(LinkUpdate& update);
 
   LinkOptions options_;
   EditedScene scene_;
