@@ -60,6 +60,17 @@ LinkOptions checked(LinkOptions options, const Scene& scene) {
   return options;
 }
 
+/// By so much more light links of a node may be worth looking at that were not.
+constexpr double kBrighter = 4;
+
+/// Of any node: one that was dark, too.
+bool is_much_brighter(std::span<const double> Y, std::span<const double> before) {
+  for (std::size_t n = 0; n < before.size(); ++n) {
+    if (Y[n] > kBrighter * before[n]) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 LinkedRadiosity::LinkedRadiosity(Scene scene, const LinkOptions& options)
@@ -216,13 +227,16 @@ void LinkedRadiosity::follow(Pending pending, const LinkInterruption& interrupti
     pending.stage = Stage::new_light;
   update.seconds_links += watch.lap();
   if (shoots) {
+    const std::span<const double> Y = radiosity_.luminance();
+    const std::vector<double> before(Y.begin(), Y.end());
     shoot(update);
+    pending.new_light = pending.new_light || is_much_brighter(radiosity_.luminance(), before);
   } else {
     gather(update);
   }
   bool done = pending.stage == Stage::new_light;
   if (done && pending.new_light) {
-    // What has come had no light before the exchange.
+    // What has come, or was covered, had no light before the exchange.
     if (pending.pairs.empty()) {
       set_energies(links_, tree_, radiosity_.luminance());
       pending.luminance.clear();
