@@ -14,7 +14,7 @@ namespace exitance {
 /// faster than the differences' own, and not faster than 0.2 an order, because the first few may fall by chance. Two
 /// rules may agree by chance, too: where the first was expected to err more than they differ by, that counts twice in
 /// the geometric mean of both. Of a first rule too low to expect anything, the second's coefficients tell: those of
-/// order 2m, which make the error a tenth of their size at least. The error given is ten times what is expected. All
+/// order 2m, which make the error a tenth of their size at least. The error given is five times what is expected. All
 /// of it is an extrapolation over 2 (n − m) orders: n should be no more than 2m.
 class RuleDecay {
  public:
@@ -30,7 +30,7 @@ class RuleDecay {
   double fall() const { return fall_; }               ///< at most 1: of coefficients, from one order to the next
 
  private:
-  static constexpr double kSure = 10;
+  static constexpr double kSure = 5;
 
   int order_ = 0, step_ = 0;  ///< step_: from the order before
   double integral_ = 0, difference_ = 0, expected_ = 0, fall_ = 1;
