@@ -57,8 +57,8 @@ struct LinkUpdate {
 
 /// When an update ends early, and what it has done by then.
 struct LinkInterruption {
-  /// Asked now and then, by any thread where everything is rebuilt; what has been looked at then is exchanged all the
-  /// same.
+  /// Asked now and then, by any thread where everything is rebuilt or in any order; what has been looked at then is
+  /// exchanged all the same.
   std::function<bool()> stop;
   LinkOrder order = LinkOrder::importance;
 };
