@@ -70,6 +70,7 @@ class Frames {
   LinkInterruption interruption(bool by_budget = true) const {
     LinkInterruption how;
     by_budget = by_budget && options_.budget;
+    if (!by_budget) how.order = LinkOrder::any;
     const auto start = std::chrono::steady_clock::now();
     how.stop = [this, start, by_budget] {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;

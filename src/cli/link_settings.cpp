@@ -1,6 +1,7 @@
 #include "src/cli/link_settings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "src/cli/number_range.h"
@@ -57,6 +58,12 @@ LinkOptions LinkSettings::chosen(const DynamicScene& scene, std::optional<double
   options.smallest_area = smallest_area_.value_or(given.smallest_area.value_or(options.smallest_area));
   options.points_per_edge = points_;
   options.clusters = clusters_ == "on" || (clusters_ == "auto" && scene.scene.surfaces.size() > kManySurfaces);
+  const bool cut_as_said = patch_size || given.patch_size || scene.scene.mesh.patch_size > 0;
+  if (options.clusters && !cut_as_said) {
+    // What enters the shafts of a floor that is one patch would be much of a large scene.
+    const double area = options.smallest_area > 0 ? options.smallest_area : default_smallest_area(scene.scene);
+    options.mesh.patch_size = 2 * std::sqrt(area);
+  }
   if (options.eps1 > options.eps2) throw CLI::ValidationError("--eps1", "must not be above --eps");
   return options;
 }

@@ -20,7 +20,8 @@ class LinkSettings {
   /// Adds --b-eps.
   void add_update_to(CLI::App& verb);
 
-  /// As given, else as the scene says, else by default. patch_size: as given. The tolerance is the caller's. Throws
+  /// As given, else as the scene says, else by default; where clusters are linked and none says how to cut, into
+  /// patches of twice the edge of the smallest area. patch_size: as given. The tolerance is the caller's. Throws
   /// CLI::ValidationError where eps1 is above eps.
   LinkOptions chosen(const DynamicScene& scene, std::optional<double> patch_size) const;
 

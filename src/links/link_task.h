@@ -24,7 +24,8 @@ enum class LinkScope : std::uint8_t {
 /// In which order the pairs of patches are worked on, where that can be interrupted.
 enum class LinkOrder : std::uint8_t {
   importance,  ///< those first that could bring the most
-  index        ///< by receiving patch and then by source, as links are kept
+  index,       ///< by receiving patch and then by source, as links are kept
+  any          ///< receiving patches in parallel: the least work. The task's `stop` is asked by any thread
 };
 
 /// Everything that decides what becomes of the links. Luminances and thresholds in [W/m²] or what the scene has.

@@ -33,13 +33,24 @@ class Update {
     workers_ = Workers([this, before, shadows] { return std::make_unique<PairUpdate>(task_, now_, before, shadows); });
   }
 
-  /// Everything, receiver by receiver.
-  void run() {
+  /// Everything, receiver by receiver. Returns what is left once the task is to stop.
+  std::vector<PendingPair> run() {
+    std::vector<std::vector<PendingPair>> left(links_.roots());
+    std::atomic<bool> stopped = false;
     for_each_receiver([&](std::uint32_t r, PairUpdate& worker) {
+      if (task_.scope != LinkScope::refinement && task_.stop && !stopped && task_.stop()) stopped = true;
+      const bool leaves = stopped;
       std::vector<std::uint32_t> sources;
-      find(r, worker, [&](std::uint32_t s, PairUpdate::Need, std::span<const Link>) { sources.push_back(s); });
+      find(r, worker, [&](std::uint32_t s, PairUpdate::Need need, std::span<const Link> links) {
+        if (leaves && need != PairUpdate::Need::removal) {
+          left[r].push_back({{r, s}, worker.stake({r, s}, links)});
+        } else {
+          sources.push_back(s);
+        }
+      });
       work(r, sources, worker);
     });
+    return joined(left);
   }
 
   /// What there is to do, in order.
@@ -52,8 +63,7 @@ class Update {
             {{r, s}, goes ? std::numeric_limits<double>::infinity() : worker.stake({r, s}, links)});
       });
     });
-    std::vector<PendingPair> all;
-    for (const auto& pairs : of_receiver) all.insert(all.end(), pairs.begin(), pairs.end());
+    std::vector<PendingPair> all = joined(of_receiver);
     const auto goes = [](const PendingPair& p) { return p.stake == std::numeric_limits<double>::infinity(); };
     if (task_.order == LinkOrder::importance) {
       std::ranges::stable_sort(all, std::ranges::greater(), &PendingPair::stake);
@@ -86,6 +96,12 @@ class Update {
   }
 
  private:
+  static std::vector<PendingPair> joined(const std::vector<std::vector<PendingPair>>& of_receiver) {
+    std::vector<PendingPair> all;
+    for (const auto& pairs : of_receiver) all.insert(all.end(), pairs.begin(), pairs.end());
+    return all;
+  }
+
   using Workers = tbb::enumerable_thread_specific<std::unique_ptr<PairUpdate>>;
 
   template <class Do>
@@ -209,6 +225,8 @@ LinkWork update_links(const LinkTask& task, LinkIndex& links, NodeRadiosity* dif
   Update update(task, links, differences);
   if (pending == nullptr) {
     update.run();
+  } else if (pending->empty() && task.order == LinkOrder::any) {
+    *pending = update.run();
   } else {
     if (pending->empty()) *pending = update.find_all();
     update.run(*pending);

@@ -23,8 +23,8 @@ struct PendingPair {
 /// `hierarchical` leave the same. With `differences`, what links bring more than before is handed to it
 /// (NodeRadiosity::receive). Throws LimitError when there are more links than the task allows; some are then done.
 ///
-/// With `pending`, a task can be interrupted (LinkTask::stop): it works on pairs in its order, 32 at a time, all that has
-/// to go first, and leaves in `pending` those that it did not come to. Called again with these,
+/// With `pending`, a task can be interrupted (LinkTask::stop): it works on pairs in its order, 32 at a time or those of
+/// a patch, and on all that has to go, and leaves in `pending` those that it did not come to. Called again with these,
 /// the same task goes on where it ended: together both leave what one call would have left.
 LinkWork update_links(const LinkTask& task, LinkIndex& links, NodeRadiosity* differences = nullptr,
                       std::vector<PendingPair>* pending = nullptr);

@@ -54,9 +54,8 @@ LinkOptions checked(LinkOptions options, const Scene& scene) {
                         options.B_eps >= 0 && options.smallest_area >= 0 && options.tolerance > 0 &&
                         options.points_per_edge >= 1 && options.points_per_edge <= 20;
   if (!in_range) throw std::invalid_argument("links: 0 ≤ eps1 ≤ eps2, B_eps ≥ 0, smallest_area ≥ 0, tolerance > 0");
-  if (options.smallest_area == 0) options.smallest_area = kShareOfArea * total_area(scene);
+  if (options.smallest_area == 0) options.smallest_area = default_smallest_area(scene);
   if (!(options.smallest_area > 0)) throw std::invalid_argument("no surface has an area; there is nothing to link");
-  if (options.clusters && options.mesh.patch_size == 0) options.mesh.patch_size = 2 * std::sqrt(options.smallest_area);
   return options;
 }
 
@@ -72,6 +71,10 @@ bool is_much_brighter(std::span<const double> Y, std::span<const double> before)
 }
 
 }  // namespace
+
+double default_smallest_area(const Scene& scene) {
+  return kShareOfArea * total_area(scene);
+}
 
 LinkedRadiosity::LinkedRadiosity(Scene scene, const LinkOptions& options)
     : options_(checked(options, scene)),

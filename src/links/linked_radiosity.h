@@ -27,17 +27,19 @@ struct LinkOptions {
   /// Shares of the largest luminance of E that is given: links are refined while B F is above eps2, un-refined when it
   /// falls below eps1, and left as they are by PEU where it could not change by more than B_eps. 0 ≤ eps1 ≤ eps2.
   double eps2 = 5e-3, eps1 = 2.5e-3, B_eps = 1e-4;
-  /// [m²] no sub-patch is smaller, about; 0: a 6,000th of the area of all patches.
+  /// [m²] no sub-patch is smaller, about; 0: default_smallest_area.
   double smallest_area = 0;
   unsigned points_per_edge = 2;  ///< squared, the points by which a sub-patch receives over a link
   /// Whether pairs of patches get links of their own only where those of their clusters do not do (cluster_links.h).
-  /// Nothing but rebuilding follows an edit then. A mesh.patch_size of 0 then means twice the edge of the smallest
-  /// area: what enters the shafts of a floor that is one patch would be much of a large scene.
+  /// Nothing but rebuilding follows an edit then.
   bool clusters = false;
   std::uint64_t most_rounds = 30;  ///< of refinement and exchange, when links are built
   /// Of the exchange of energy: bound of B's error relative to max B; of PEU, the share of energy that may stay unshot.
   double tolerance = 1e-6;
 };
+
+/// [m²] a 6,000th of the area of all patches, those included that an edit may bring.
+double default_smallest_area(const Scene& scene);
 
 /// What building or updating did and took.
 struct LinkUpdate {
@@ -55,8 +57,8 @@ struct LinkUpdate {
 
 /// When an update ends early, and what it has done by then.
 struct LinkInterruption {
-  /// Asked now and then, by any thread where everything is rebuilt; what has been looked at then is exchanged all the
-  /// same.
+  /// Asked now and then, by any thread where everything is rebuilt or in any order; what has been looked at then is
+  /// exchanged all the same.
   std::function<bool()> stop;
   LinkOrder order = LinkOrder::importance;
 };

@@ -78,6 +78,19 @@ TEST(Links, OfGroupsSpareThoseOfPatches) {
   EXPECT_LT(links["cluster_links"].get<int>() + links["patch_pairs"].get<int>(), 30 * 1001);
 }
 
+TEST(Links, OfGroupsLeavePatchesAsTheyAreGiven) {
+  const ScratchFolder scratch;
+  const auto patches = [&](const std::string& options) {
+    const Outcome outcome = run("solve " + data("furnace_cube.toml") + " --method hierarchical --eps 0.5 " + options +
+                                " -o " + (scratch / "r").string());
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return json_in(scratch / "r" / "result.json")["patches"].get<int>();
+  };
+  EXPECT_EQ(patches("--clusters off"), 6);
+  EXPECT_EQ(patches("--clusters on --patch-size 0"), 6);
+  EXPECT_GT(patches("--clusters on --min-area 0.01"), 6);
+}
+
 TEST(Links, UpdatesAreInterruptedAndGoOn) {
   const ScratchFolder scratch;
   const std::string to = (scratch / "d").string();

@@ -19,6 +19,7 @@ LinkOptions clustered(double eps, double smallest_area = 0.3) {
   options.eps2 = eps;
   options.eps1 = eps / 2;
   options.smallest_area = smallest_area;
+  options.mesh.patch_size = 2 * std::sqrt(smallest_area);
   options.tolerance = 1e-10;
   options.clusters = true;
   return options;

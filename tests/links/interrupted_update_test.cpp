@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
@@ -177,6 +178,38 @@ TEST(InterruptedUpdate, HasDoneTheMostImportantPart) {
     EXPECT_LT(by_importance, by_index) << links << " and " << as_many << " of " << all;
     break;
   }
+}
+
+TEST(InterruptedUpdate, InAnyOrderLeavesTheSameInTheEnd) {
+  const Stored stored;
+  for (const LinkMethod method : {LinkMethod::direct, LinkMethod::hvt, LinkMethod::hvt_peu}) {
+    LinkedRadiosity whole(stored.given.scene, stored.options), parts(stored.given.scene, stored.options);
+    whole.build();
+    parts.build();
+    for (std::size_t event = 0; event < stored.given.events.size(); ++event) {
+      const LinkUpdate all = whole.update(stored.edits(event), method);
+      std::atomic<int> questions = 20;
+      const LinkInterruption early{[&] { return questions-- <= 0; }, LinkOrder::any};
+      const LinkUpdate part = parts.update(stored.edits(event), method, early);
+      EXPECT_GT(part.pairs_left, 0u);
+      EXPECT_GT(part.work.links_updated, 0u);
+      EXPECT_LT(part.work.links_updated, all.work.links_updated);
+      const LinkUpdate rest = parts.work_off({[] { return false; }, LinkOrder::any});
+      EXPECT_EQ(rest.pairs_left, 0u);
+      expect_same_links(whole.links(), parts.links());
+    }
+  }
+}
+
+TEST(InterruptedUpdate, RebuildingEndsEarlyAsBuildingDoes) {
+  LinkedRadiosity links(room_with_things(), coarse()), whole(room_with_things(), coarse());
+  links.build();
+  const Edit box = move_to(1, {0.4, 0.2, 0});
+  EXPECT_TRUE(links.update({&box, 1}, LinkMethod::rebuild, {[] { return true; }}).stopped);
+  EXPECT_FALSE(links.update({&box, 1}, LinkMethod::rebuild, {[] { return false; }}).stopped);
+  whole.build();
+  whole.update({&box, 1}, LinkMethod::rebuild);
+  EXPECT_TRUE(same_bits(links.links(), whole.links()));
 }
 
 /// Everything that can be seen of a solution.
