@@ -103,7 +103,8 @@ class Dynamic {
     verb.footer(
         "frames.json is a list: frame 0 is the scene before the first event, each other one follows the events of one\n"
         "time. error and error_worst_1_percent are eq. 7 of George et al. (1990) over elements, against the converged\n"
-        "solution of that frame; null where there is no reference. Each frame is written when it is done; Ctrl-C ends with\n"
+        "solution of that frame; null where there is no reference. Each frame is written when it is done; Ctrl-C ends "
+        "with\n"
         "those so far, exit code 4.\n"
         "Methods by links link all pairs of patches: clusters of patches are for solve --method hierarchical.");
   }
@@ -279,8 +280,8 @@ class Dynamic {
     frame["propagation_shots"] = work.propagations;
     frame["redistribution_shots"] = work.redistributions;
     frame["gathered_patches"] = work.gatherings;
-    frame["visibility_tests"] = work.propagation.visibility_tests + work.redistribution.visibility_tests +
-                                work.gathering.visibility_tests;
+    frame["visibility_tests"] =
+        work.propagation.visibility_tests + work.redistribution.visibility_tests + work.gathering.visibility_tests;
     frame["redistribution_tests"] = work.redistribution.visibility_tests;
     frame["redistribution_tests_idle"] = work.redistribution.idle_tests;
     frame["redistribution_tests_idle_patches"] = work.redistribution.idle_patch_tests;

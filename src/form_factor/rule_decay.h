@@ -3,15 +3,15 @@
 
 namespace exitance {
 
-/// An analytic integrand's Legendre coefficients fall as ρ^-k, and the Gauss rule of order n errs as its coefficients of
-/// order 2n are large. So what two rules of orders m < n differ by is the error of the first, which reaches farther than
-/// any coefficient that a rule finds itself, and the second errs less by the fall over 2 (n − m) orders more. How fast
-/// coefficients fall is told by the difference as a share of the integral, and by that of this difference to the one
-/// before, which is slower where the integrand has a pole close by. Coefficients that the rule itself finds tell less of
-/// what comes far behind them, but see more of the integrand; so what counts is a fall between the two, not faster than
-/// the differences' own, and not faster than 0.2 an order, because the first few may fall by chance. Two rules may
-/// agree by chance, too: where the first was expected to err more than they differ by, that counts twice in the geometric mean of both. The
-/// error given is ten times what is expected.
+/// An analytic integrand's Legendre coefficients fall as ρ^-k, and the Gauss rule of order n errs as its coefficients
+/// of order 2n are large. So what two rules of orders m < n differ by is the error of the first, which reaches farther
+/// than any coefficient that a rule finds itself, and the second errs less by the fall over 2 (n − m) orders more. How
+/// fast coefficients fall is told by the difference as a share of the integral, and by that of this difference to the
+/// one before, which is slower where the integrand has a pole close by. Coefficients that the rule itself finds tell
+/// less of what comes far behind them, but see more of the integrand; so what counts is a fall between the two, not
+/// faster than the differences' own, and not faster than 0.2 an order, because the first few may fall by chance. Two
+/// rules may agree by chance, too: where the first was expected to err more than they differ by, that counts twice in
+/// the geometric mean of both. The error given is ten times what is expected.
 class RuleDecay {
  public:
   RuleDecay() = default;

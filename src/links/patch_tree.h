@@ -55,8 +55,8 @@ class PatchTree {
   PatchTree(const EditedScene& scene, const PolygonSoup& soup, const TreeOptions& options);
 
   /// After an edit of the geometry of an object; soup: of the scene as it is now, and each object's polygons there. All
-  /// other nodes keep their numbers and places. The object's keep their numbers where it has as many roots as before of nearly the same areas (1e-6,
-  /// relative); otherwise they are void and it has new ones behind all others.
+  /// other nodes keep their numbers and places. The object's keep their numbers where it has as many roots as before of
+  /// nearly the same areas (1e-6, relative); otherwise they are void and it has new ones behind all others.
   void change_geometry(const EditedScene& scene, const PolygonSoup& soup,
                        std::span<const PolygonSoup::PolygonRange> polygons, std::uint32_t object);
 
