@@ -11,12 +11,22 @@
 
 namespace exitance {
 
+/// To build links by. eps2: a share of the brightest E; smallest_area: [m²].
+inline LinkOptions link_options(double eps2, double smallest_area) {
+  LinkOptions options;
+  options.eps2 = eps2;
+  options.eps1 = eps2 / 2;
+  options.smallest_area = smallest_area;
+  options.tolerance = 1e-5;
+  return options;
+}
+
 struct LinkScene {
   DynamicScene given;
   std::vector<Edit> edits;          ///< what happens at the time of the first event
   std::vector<std::uint8_t> moves;  ///< by object, whether that is of it
 
-  /// `name`: of a scene file in data/, which has [links] with eps2 and smallest_area.
+  /// `name`: of a scene file in data/.
   explicit LinkScene(const std::string& name)
       : given(read_dynamic_scene(std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / (name + ".toml"),
                                  Emission::exitance)),
@@ -28,14 +38,9 @@ struct LinkScene {
     }
   }
 
-  /// With these shares of the file's eps2 and smallest area.
+  /// With these shares of the eps2 and the smallest area that the file's [links] must have.
   LinkOptions options(double of_eps2, double of_smallest_area) const {
-    LinkOptions options;
-    options.eps2 = given.links.eps2.value() * of_eps2;
-    options.eps1 = options.eps2 / 2;
-    options.smallest_area = given.links.smallest_area.value() * of_smallest_area;
-    options.tolerance = 1e-5;
-    return options;
+    return link_options(given.links.eps2.value() * of_eps2, given.links.smallest_area.value() * of_smallest_area);
   }
 };
 

@@ -13,6 +13,7 @@
 
 #include "experiments/csv_table.h"
 #include "experiments/experiment_options.h"
+#include "experiments/link_scene.h"
 #include "experiments/luminance_record.h"
 #include "experiments/plot_note.h"
 #include "src/output/plot.h"
@@ -72,10 +73,7 @@ void converge(const Question& question, Tables& tables) {
   if (!question.B) truth = reference(question, scene);
   PlotSeries all{question.label, {}}, worst{question.label + ", worst 1 %", {}, true};
   for (const double eps2 : question.eps2) {
-    LinkOptions options;
-    options.eps2 = eps2;
-    options.eps1 = eps2 / 2;
-    options.smallest_area = question.smallest_area + question.area_per_eps2 * eps2;
+    LinkOptions options = link_options(eps2, question.smallest_area + question.area_per_eps2 * eps2);
     options.tolerance = 1e-8;
     LinkedRadiosity links(scene, options);
     const LinkUpdate built = links.build();

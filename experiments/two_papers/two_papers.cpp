@@ -15,6 +15,7 @@
 
 #include "experiments/csv_table.h"
 #include "experiments/experiment_options.h"
+#include "experiments/link_scene.h"
 #include "experiments/luminance_record.h"
 #include "experiments/plot_note.h"
 #include "src/dynamic/edit_session.h"
@@ -22,7 +23,6 @@
 #include "src/output/run_clock.h"
 #include "src/reference/comparison.h"
 #include "src/reference/reference_solution.h"
-#include "src/scene/scene_file.h"
 
 namespace exitance {
 namespace {
@@ -100,14 +100,10 @@ std::vector<Question> questions(bool reduced) {
            1200}};
 }
 
-LinkOptions link_options(const Refinement& refinement, double of_eps2, unsigned points) {
-  LinkOptions options;
-  options.eps2 = refinement.eps2;
-  options.eps1 = refinement.eps2 / 2;
-  options.smallest_area = refinement.smallest_area;
+LinkOptions options_of(const Refinement& refinement, double of_eps2, unsigned points) {
+  LinkOptions options = link_options(refinement.eps2, refinement.smallest_area);
   options.B_eps = of_eps2 * refinement.eps2;
   options.points_per_edge = points;
-  options.tolerance = 1e-5;
   return options;
 }
 
@@ -128,18 +124,13 @@ struct Reached {
 
 class Contest {
  public:
-  Contest(const Question& question, Tables& tables) : question_(question), tables_(tables) {
-    given_ = read_dynamic_scene(std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / (question.scene + ".toml"),
-                                Emission::exitance);
-    for (const Event& event : given_.events) {
-      if (event.time == given_.events.front().time) edits_.push_back(event.edit);
-    }
+  Contest(const Question& question, Tables& tables) : question_(question), tables_(tables), scene_(question.scene) {
     SessionOptions options;
     options.mesh = question.measured;
-    EditSession measured(given_.scene, options);
+    EditSession measured(scene_.given.scene, options);
     measured.work({});
     const std::vector<double> was = luminance_of(measured.solution());
-    for (const Edit& edit : edits_) measured.apply(edit);
+    for (const Edit& edit : scene_.edits) measured.apply(edit);
     measured_ = luminance_record(measured.solution());
     for (const std::uint32_t e : present_elements(measured.solution().version()))
       was_.push_back(e < was.size() ? was[e] : 0);
@@ -154,7 +145,7 @@ class Contest {
   }
 
   void run() {
-    Plot plot{fmt::format("{}: what an edit costs", given_.scene.name), "processor seconds",
+    Plot plot{fmt::format("{}: what an edit costs", scene_.given.scene.name), "processor seconds",
               "eq. 7 error on the 1 % most changed"};
     plot.note = plot_note();
     record({"nothing", "", ""}, 0, error_of(was_));
@@ -173,7 +164,7 @@ class Contest {
       options.error = question_.reference_error;
       return luminance_record(solve_reference(scene, make_soup(scene), options).record);
     }
-    LinkedRadiosity links(scene, link_options(question_.truth, 0, question_.truth_points));
+    LinkedRadiosity links(scene, options_of(question_.truth, 0, question_.truth_points));
     links.build();
     return luminance_record(links);
   }
@@ -211,7 +202,7 @@ class Contest {
     options.mesh = mesh;
     options.tolerance = 1e-5;
     const RunClock whole;
-    EditSession before(given_.scene, options);
+    EditSession before(scene_.given.scene, options);
     before.work({});
     fmt::print(stderr, "{}: before, patches of {} m, in {:.3g} s\n", question_.label, mesh.patch_size,
                whole.cpu_seconds());
@@ -220,7 +211,7 @@ class Contest {
       options.strategy = strategy;
       EditSession session(before, options);
       RunClock clock;
-      for (const Edit& edit : edits_) session.apply(edit);
+      for (const Edit& edit : scene_.edits) session.apply(edit);
       double seconds = clock.cpu_seconds();
       Knobs knobs{name, digits(mesh.patch_size), "", session.solution().version().present_elements()};
       PlotSeries series{fmt::format("{}, patches of {} m", name, mesh.patch_size), {}};
@@ -231,7 +222,7 @@ class Contest {
         clock = RunClock();
         const SessionWork done = session.work(budget);
         seconds += clock.cpu_seconds();
-        shots += done.propagations + done.redistributions;
+        shots += done.shots();
         finished = done.finished;
         const ConvergenceError left = error_of(luminance_record(session.solution()));
         knobs.step = fmt::format("{}", shots);
@@ -248,12 +239,11 @@ class Contest {
     std::vector<std::optional<double>> thresholds(question_.B_eps.rbegin(), question_.B_eps.rend());
     thresholds.emplace_back();
     for (const std::optional<double> threshold : thresholds) {
-      LinkedRadiosity links(given_.scene, link_options(refinement, threshold.value_or(0), 2));
+      LinkedRadiosity links(scene_.given.scene, options_of(refinement, threshold.value_or(0), 2));
       links.build();
-      const LinkUpdate done = links.update(edits_, threshold ? LinkMethod::hvt_peu : LinkMethod::hvt);
+      const LinkUpdate done = links.update(scene_.edits, threshold ? LinkMethod::hvt_peu : LinkMethod::hvt);
       const SolutionRecord found = luminance_record(links);
-      const LinkCounts counts =
-          links.links().count(links.tree(), std::vector<std::uint8_t>(given_.scene.objects.size()));
+      const LinkCounts counts = links.links().count(links.tree(), scene_.moves);
       const Knobs knobs{threshold ? "hvt_peu" : "hvt", digits(refinement.eps2),
                         threshold ? digits(*threshold * refinement.eps2) : "", found.B.size(), counts.links()};
       const ConvergenceError left = error_of(found);
@@ -285,8 +275,7 @@ class Contest {
 
   const Question& question_;
   Tables& tables_;
-  DynamicScene given_;
-  std::vector<Edit> edits_;
+  LinkScene scene_;
   SolutionRecord measured_;              ///< its mesh is that over whose elements errors are taken
   std::vector<std::uint32_t> elements_;  ///< of that
   std::vector<double> truth_, was_;      ///< by element: after the edit, and, to find what changes most, before

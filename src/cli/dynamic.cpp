@@ -26,11 +26,11 @@
 #include "src/dynamic/converged_reference.h"
 #include "src/dynamic/edit_session.h"
 #include "src/dynamic/picture.h"
-#include "src/dynamic/trespass.h"
 #include "src/output/result_folder.h"
 #include "src/output/whole_file.h"
 #include "src/scene/input_error.h"
 #include "src/scene/scene_file.h"
+#include "src/scene/trespass.h"
 
 namespace exitance {
 namespace {
@@ -258,7 +258,8 @@ class Dynamic {
     const DynamicRadiosity& state = session.solution();
     // Only now is an object that is selected where it is shown.
     for (const auto& [object, line] : std::exchange(moved_, {})) {
-      for (const std::string& warning : find_trespass(session.scene(), state.version(), object))
+      for (const std::string& warning :
+           find_trespass(session.scene(), state.version().soup(), state.version().facet_ranges(), object))
         print_warning(fmt::format("{}:{}: {}", path_, line, warning));
     }
     const std::vector<double> B = state.element_B();

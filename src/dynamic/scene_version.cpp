@@ -36,7 +36,7 @@ SceneVersion::SceneVersion(const EditedScene& scene, const MeshOptions& options)
     slot.patch_count = patch - slot.patch_first;
   }
   place_objects(scene, true);
-  for (ObjectSlot& slot : slots_) slot.box = box_of(slot);
+  for (ObjectSlot& slot : slots_) find_box(slot);
   find_objects();
   index_elements();
 }
@@ -57,7 +57,7 @@ SceneVersion::SceneVersion(const SceneVersion& before, const EditedScene& scene,
   const bool shares = soup_.shares_with(before.soup_);
   if (shares) slots_[object].polygons = soup_.arrived();
   place_objects(scene, !shares);
-  slots_[object].box = box_of(slots_[object]);
+  find_box(slots_[object]);
   const PatchMesh own =
       make_patch_mesh(scene.scene(), soup_, options, surfaces.first, surfaces.last, slots_[object].polygons.first);
   object_of_patch_ = before.object_of_patch_;
@@ -168,12 +168,17 @@ void SceneVersion::place_objects(const EditedScene& scene, bool soup_is_new) {
   }
 }
 
-Box SceneVersion::box_of(const ObjectSlot& slot) const {
-  Box box;
-  for (std::uint32_t f = slot.facet_first; slot.present && f < slot.facet_last; ++f) {
-    for (const Corner& c : soup_.corners(soup_.facets()[f])) box.extend(c.at);
+void SceneVersion::find_box(ObjectSlot& slot) const {
+  slot.box = slot.present ? facet_range(soup_, slot.facet_first, slot.facet_last).box : Box{};
+}
+
+std::vector<FacetRange> SceneVersion::facet_ranges() const {
+  std::vector<FacetRange> ranges(slots_.size());
+  for (std::size_t object = 0; object < slots_.size(); ++object) {
+    const ObjectSlot& slot = slots_[object];
+    if (slot.present) ranges[object] = {slot.facet_first, slot.facet_last, slot.box};
   }
-  return box;
+  return ranges;
 }
 
 std::uint32_t SceneVersion::object_of_facet(std::uint32_t facet) const {

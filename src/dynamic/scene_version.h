@@ -12,6 +12,7 @@
 #include "geometry/shadow_volume.h"
 #include "src/dynamic/patch_sight.h"
 #include "src/scene/edit.h"
+#include "src/scene/facet_range.h"
 #include "src/scene/patch_mesh.h"
 #include "src/visibility/exact_visibility.h"
 
@@ -57,6 +58,8 @@ class SceneVersion {
   std::size_t objects() const { return slots_.size(); }
 
   const ObjectSlot& slot(std::uint32_t object) const { return slots_[object]; }
+  /// By object: its facets, none where it is not there.
+  std::vector<FacetRange> facet_ranges() const;
   /// The object that a patch belongs to, or kVoid.
   std::uint32_t object_of_patch(std::uint32_t patch) const {
     return patch < object_of_patch_.size() ? object_of_patch_[patch] - 1 : kVoid;
@@ -92,7 +95,7 @@ class SceneVersion {
                   std::uint32_t surface_offset, const ObjectSlot& slot);
   void take_others(const SceneVersion& before, std::uint32_t object);
   void place_objects(const EditedScene& scene, bool soup_is_new);
-  Box box_of(const ObjectSlot& slot) const;
+  void find_box(ObjectSlot& slot) const;
   void find_objects();
   void find_object(std::uint32_t object);
   void index_elements();

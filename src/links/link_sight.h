@@ -10,7 +10,7 @@
 #include "geometry/shaft.h"
 #include "geometry/viewpoint.h"
 #include "src/links/patch_tree.h"
-#include "src/scene/trespass.h"
+#include "src/scene/facet_range.h"
 #include "src/visibility/contacts.h"
 
 namespace exitance {

@@ -31,19 +31,7 @@ bool cross_each_other(const PolygonSoup& soup, const Facet& a, const Facet& b, S
   return edges_pass(a, b) || edges_pass(b, a);
 }
 
-Box box_of(const PolygonSoup& soup, std::uint32_t facet) {
-  Box box;
-  for (const Corner& c : soup.corners(soup.facets()[facet])) box.extend(c.at);
-  return box;
-}
-
 }  // namespace
-
-FacetRange facet_range(const PolygonSoup& soup, std::uint32_t first, std::uint32_t last) {
-  FacetRange range{first, last};
-  for (std::uint32_t f = first; f < last; ++f) range.box.extend(box_of(soup, f));
-  return range;
-}
 
 std::vector<std::string> find_trespass(const EditedScene& scene, const PolygonSoup& soup,
                                        std::span<const FacetRange> ranges, std::uint32_t object) {

@@ -8,17 +8,9 @@
 
 #include "geometry/polygon_soup.h"
 #include "src/scene/edit.h"
+#include "src/scene/facet_range.h"
 
 namespace exitance {
-
-/// The facets of an object, first … last − 1; empty where it is not there.
-struct FacetRange {
-  std::uint32_t first = 0, last = 0;
-  Box box = {};  ///< around them
-};
-
-/// With its box.
-FacetRange facet_range(const PolygonSoup& soup, std::uint32_t first, std::uint32_t last);
 
 /// What is odd about where an object of the scene stands, in words; empty where nothing is:
 ///  - an edge of the object passes through the interior of another object's face, or the other way round (exact;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/facets.h"
+#include "src/stress/exact_polygon.h"
 #include "src/stress/exchange_truth.h"
 #include "src/stress/shaft_oracle.h"
 
@@ -18,12 +19,6 @@ constexpr std::size_t kMostEdgesSampled = 300, kMostEdges = 72, kMostPieces = 40
 
 Vec3 rounded(const ExactPoint& p) {
   return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
-}
-
-ExactLoop exact_loop(const Loop& loop) {
-  ExactLoop points;
-  for (const Vec3& p : loop) points.push_back(exact_point(p));
-  return points;
 }
 
 /// A convex planar piece of the receiver, the source or an occluder.
@@ -45,13 +40,6 @@ double height(const ExactSide& side, const ExactPoint& p) {
 
 bool is_within(const ExactSide& side, const ExactLoop& loop, double distance) {
   return std::ranges::all_of(loop, [&](const ExactPoint& p) { return std::fabs(height(side, p)) <= distance; });
-}
-
-bool has_area(const ExactLoop& loop) {
-  for (std::size_t k = 2; k < loop.size(); ++k) {
-    if (CGAL::cross_product(loop[k - 1] - loop[0], loop[k] - loop[0]) != CGAL::NULL_VECTOR) return true;
-  }
-  return false;
 }
 
 /// The walls over a convex loop along a normal, facing in; none where it has no area as seen along it.

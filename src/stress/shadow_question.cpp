@@ -42,13 +42,11 @@ std::vector<Receiver> points_of(const AreaScene& scene, std::uint32_t facet) {
 std::vector<std::uint32_t> screens_of(const AreaScene& scene, const Object& object) {
   const PolygonSoup& soup = scene.soup;
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
-  std::vector<std::uint32_t> items;
-  soup.index().find(soup.index().bounds(), items);
+  std::vector<std::uint32_t> items = items_of(soup);
   std::erase_if(items, [&](std::uint32_t item) {
     if (item < facets) return soup.facets()[item].polygon < scene.first_of_object || object.has(item);
     return std::ranges::any_of(soup.shells()[item - facets].facets, [&](std::uint32_t f) { return object.has(f); });
   });
-  std::ranges::sort(items);
   return items;
 }
 

@@ -1,7 +1,6 @@
 #include "src/stress/shaft_oracle.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace exitance {
 namespace {
@@ -59,47 +58,12 @@ Contact contact_of(const ExactLoop& facet, const ExactSide& plane, const ExactLo
     contact.holds = contact.holds && std::ranges::all_of(end, [&](const ExactPoint& p) { return inner.sign(p) >= 0; });
     left = clipped(left, inner);
   }
-  contact.overlap = false;
-  for (std::size_t i = 2; i < left.size(); ++i) {
-    contact.overlap =
-        contact.overlap || CGAL::cross_product(left[i - 1] - left[0], left[i] - left[0]) != CGAL::NULL_VECTOR;
-  }
+  contact.overlap = has_area(left);
   contact.holds = contact.holds && contact.overlap;
   return contact;
 }
 
 }  // namespace
-
-ExactPoint exact_point(const Vec3& p) {
-  return {p.x, p.y, p.z};
-}
-
-ExactPoint exact_mean(const ExactLoop& points) {
-  Vector sum = CGAL::NULL_VECTOR;
-  for (const ExactPoint& p : points) sum = sum + (p - CGAL::ORIGIN);
-  return CGAL::ORIGIN + sum / Rational(static_cast<int>(points.size()));
-}
-
-ExactSide exact_plane(const ExactLoop& loop) {
-  for (std::size_t i = 2; i < loop.size(); ++i) {
-    for (std::size_t j = 1; j < i; ++j) {
-      const Vector n = CGAL::cross_product(loop[j] - loop[0], loop[i] - loop[0]);
-      if (n != CGAL::NULL_VECTOR) return {loop[0], n};
-    }
-  }
-  throw std::logic_error("a facet without area");
-}
-
-ExactLoop clipped(const ExactLoop& loop, const ExactSide& side) {
-  ExactLoop kept;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const ExactPoint &p = loop[i], &q = loop[(i + 1) % loop.size()];
-    const Rational at_p = side.value(p), at_q = side.value(q);
-    if (at_p >= 0) kept.push_back(p);
-    if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) kept.push_back(p + (at_p / (at_p - at_q)) * (q - p));
-  }
-  return kept;
-}
 
 bool meets_open(const ExactLoop& loop, const std::vector<ExactSide>& sides) {
   ExactLoop left = loop;
@@ -178,6 +142,13 @@ bool reaches_into(const ExactLoop& loop, const ExactItem& shell) {
   return meets_open(loop, inner);
 }
 
+std::vector<std::uint32_t> items_of(const PolygonSoup& soup) {
+  std::vector<std::uint32_t> items;
+  soup.index().find(soup.index().bounds(), items);
+  std::ranges::sort(items);
+  return items;
+}
+
 ShaftOracle::ShaftOracle(const PolygonSoup& soup) : soup_(soup) {
   for (const Facet& f : soup.facets()) {
     ExactLoop loop;
@@ -203,13 +174,6 @@ ExactItem ShaftOracle::item(std::uint32_t index) const {
     item.planes.push_back(planes_[f]);
   }
   return item;
-}
-
-std::vector<std::uint32_t> ShaftOracle::items() const {
-  std::vector<std::uint32_t> all;
-  soup_.index().find(soup_.index().bounds(), all);
-  std::ranges::sort(all);
-  return all;
 }
 
 bool ShaftOracle::face_each_other(const ExactEnd& a, const ExactEnd& b) const {

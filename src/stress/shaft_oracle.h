@@ -2,37 +2,14 @@
 // What stands in the shaft between two convex polygons, by another route than the kernel's: everything is constructed
 // with rational coordinates: the planes of the hull of both, and what of each facet they leave.
 
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
-
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "geometry/shaft.h"
+#include "src/stress/exact_polygon.h"
 #include "src/stress/placement.h"
 
 namespace exitance {
-
-using ExactKernel = CGAL::Exact_predicates_exact_constructions_kernel;
-using ExactPoint = ExactKernel::Point_3;
-using ExactLoop = std::vector<ExactPoint>;
-
-ExactPoint exact_point(const Vec3& p);
-ExactPoint exact_mean(const ExactLoop& points);
-
-/// The half-space normal · (v − origin) ≥ 0.
-struct ExactSide {
-  ExactPoint origin;
-  ExactKernel::Vector_3 normal;
-  ExactKernel::FT value(const ExactPoint& p) const { return normal * (p - origin); }
-  int sign(const ExactPoint& p) const { return static_cast<int>(CGAL::sign(value(p))); }
-};
-
-/// Of a loop counter-clockwise seen from the front. Throws std::logic_error where it has no area.
-ExactSide exact_plane(const ExactLoop& loop);
-
-/// The part of a convex loop where value ≥ 0.
-ExactLoop clipped(const ExactLoop& loop, const ExactSide& side);
 
 /// Whether the relative interior of a convex loop meets the open intersection of half-spaces.
 bool meets_open(const ExactLoop& loop, const std::vector<ExactSide>& sides);
@@ -69,6 +46,9 @@ bool plainly_separated(const ExactEnd& a, const ExactEnd& b, const ExactItem& sh
 /// Whether the interior of a convex shell holds a point of a convex loop.
 bool reaches_into(const ExactLoop& loop, const ExactItem& shell);
 
+/// Of a soup's index, ascending: its facets that are of no convex shell, and such shells.
+std::vector<std::uint32_t> items_of(const PolygonSoup& soup);
+
 /// Of the facets of one soup, which must outlive it. Not for several threads at once.
 class ShaftOracle {
  public:
@@ -79,8 +59,6 @@ class ShaftOracle {
   const ExactSide& plane(std::uint32_t facet) const { return planes_[facet]; }
   ExactItem item(std::uint32_t index) const;
   std::vector<std::uint32_t> facets_of(std::uint32_t item) const;
-  /// All of the soup's index, ascending.
-  std::vector<std::uint32_t> items() const;
 
   bool face_each_other(const ExactEnd& a, const ExactEnd& b) const;
 

@@ -43,15 +43,9 @@ class AllShafts {
   Visibility all_ = Visibility::away;
 };
 
-std::vector<std::uint32_t> items_of(const PolygonSoup& soup) {
-  std::vector<std::uint32_t> items;
-  soup.index().find(soup.index().bounds(), items);
-  std::ranges::sort(items);
-  return items;
-}
-
 /// What the oracle allows to be said of one shaft, and then of each item.
-std::vector<Classes> allowed_of(const ShaftOracle& oracle, const AreaScene::Ends& ends, Random& random) {
+std::vector<Classes> allowed_of(const PolygonSoup& soup, const ShaftOracle& oracle, const AreaScene::Ends& ends,
+                                Random& random) {
   const ExactEnd a = oracle.end({ends.receiver, {}}), b = oracle.end({ends.source, {}});
   if (!oracle.face_each_other(a, b)) return {bits(ShaftClass::away)};
   const auto sides = sides_of_hull(a, b);
@@ -59,7 +53,7 @@ std::vector<Classes> allowed_of(const ShaftOracle& oracle, const AreaScene::Ends
   ShaftClass most = ShaftClass::outside;
   bool undecided = false, in_plane = false, has_certain_block = false;
   ExactItem all;
-  for (const std::uint32_t index : oracle.items()) {
+  for (const std::uint32_t index : items_of(soup)) {
     const ExactItem item = oracle.item(index);
     const ShaftClass c = class_of(oracle.overlap(a, b, sides, index));
     const bool is_blocking = c == ShaftClass::blocking;
@@ -121,7 +115,7 @@ Truth shaft_truth(const Question& question) {
   std::vector<Classes> allowed;
   AllShafts all;
   for (const AreaScene::Ends& ends : scene.ends()) {
-    const std::vector<Classes> one = allowed_of(oracle, ends, random);
+    const std::vector<Classes> one = allowed_of(scene.soup, oracle, ends, random);
     allowed.insert(allowed.end(), one.begin(), one.end());
     for (const ShaftClass c : {ShaftClass::outside, ShaftClass::partial, ShaftClass::blocking, ShaftClass::away}) {
       if (one[0] == bits(c)) all.add(visibility_of(c));

@@ -1,6 +1,5 @@
 #include "src/stress/visibility_oracle.h"
 
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_set_2.h>
 
 #include <algorithm>
@@ -8,69 +7,30 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 
 #include "geometry/facets.h"
+#include "src/stress/exact_polygon.h"
 
 namespace exitance {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using Kernel = ExactKernel;
 using Rational = Kernel::FT;
-using Point = Kernel::Point_3;
 using Vector = Kernel::Vector_3;
-using ExactLoop = std::vector<Point>;
 using FlatPolygon = CGAL::Polygon_2<Kernel>;
 using Region = CGAL::Polygon_set_2<Kernel>;
 using Real = boost::multiprecision::cpp_bin_float_100;
 
-Point exact(const Vec3& p) {
-  return {p.x, p.y, p.z};
-}
-
-ExactLoop exact(const Loop& loop) {
-  ExactLoop points;
-  for (const Vec3& p : loop) points.push_back(exact(p));
-  return points;
-}
-
-/// value(p) = normal · (p − origin).
-struct HalfSpace {
-  Point origin;
-  Vector normal;
-
-  Rational value(const Point& p) const { return normal * (p - origin); }
-};
-
-HalfSpace plane_of(const ExactLoop& facet) {
-  for (std::size_t i = 2; i < facet.size(); ++i) {
-    const Vector normal = CGAL::cross_product(facet[1] - facet[0], facet[i] - facet[0]);
-    if (normal != CGAL::NULL_VECTOR) return {facet[0], normal};
-  }
-  throw std::logic_error("a facet without area");
-}
-
-/// The part of a convex loop where value ≥ 0.
-ExactLoop clip(const ExactLoop& loop, const HalfSpace& half_space) {
-  ExactLoop kept;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Point &p = loop[i], &q = loop[(i + 1) % loop.size()];
-    const Rational at_p = half_space.value(p), at_q = half_space.value(q);
-    if (at_p >= 0) kept.push_back(p);
-    if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) kept.push_back(p + (at_p / (at_p - at_q)) * (q - p));
-  }
-  return kept;
-}
-
 /// The half-spaces whose intersection is the cone from the apex over a convex loop.
-std::vector<HalfSpace> cone_over(const ExactLoop& loop, const Point& apex) {
-  std::vector<HalfSpace> sides;
+std::vector<ExactSide> cone_over(const ExactLoop& loop, const ExactPoint& apex) {
+  std::vector<ExactSide> sides;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Point &p = loop[i], &q = loop[(i + 1) % loop.size()];
+    const ExactPoint &p = loop[i], &q = loop[(i + 1) % loop.size()];
     if (p == q) continue;
     Vector normal = CGAL::cross_product(p - apex, q - apex);
-    const bool flip = std::any_of(loop.begin(), loop.end(), [&](const Point& r) { return normal * (r - apex) < 0; });
+    const bool flip =
+        std::any_of(loop.begin(), loop.end(), [&](const ExactPoint& r) { return normal * (r - apex) < 0; });
     sides.push_back({apex, flip ? -normal : normal});
   }
   return sides;
@@ -78,14 +38,14 @@ std::vector<HalfSpace> cone_over(const ExactLoop& loop, const Point& apex) {
 
 /// Coordinates in a plane: the points of space without their coordinate `axis`.
 struct Chart {
-  HalfSpace plane;
+  ExactSide plane;
   int axis;
 
-  explicit Chart(const HalfSpace& p) : plane(p), axis(p.normal.x() != 0 ? 0 : p.normal.y() != 0 ? 1 : 2) {}
+  explicit Chart(const ExactSide& p) : plane(p), axis(p.normal.x() != 0 ? 0 : p.normal.y() != 0 ? 1 : 2) {}
 
-  Kernel::Point_2 flat(const Point& p) const { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
+  Kernel::Point_2 flat(const ExactPoint& p) const { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
-  Point lift(const Kernel::Point_2& p) const {
+  ExactPoint lift(const Kernel::Point_2& p) const {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     Rational coordinates[3];
     coordinates[u] = p.x();
@@ -99,7 +59,7 @@ struct Chart {
   /// A convex loop, counter-clockwise in the chart, without its collinear vertices; empty if it has no area.
   FlatPolygon flat(const ExactLoop& loop) const {
     std::vector<Kernel::Point_2> points;
-    for (const Point& p : loop) points.push_back(flat(p));
+    for (const ExactPoint& p : loop) points.push_back(flat(p));
     const auto is_corner = [](const auto& a, const auto& b, const auto& c) { return !CGAL::collinear(a, b, c); };
     for (bool changed = true; changed && points.size() > 2;) {
       changed = false;
@@ -143,7 +103,7 @@ RealVector cross(const RealVector& a, const RealVector& b) {
 }
 
 /// Lambert's sum around a loop: Σ θ (n · m), m the unit normal of the plane through the point and an edge.
-Real contour_sum(const FlatPolygon& loop, const Chart& chart, const Point& x, const RealVector& unit_normal) {
+Real contour_sum(const FlatPolygon& loop, const Chart& chart, const ExactPoint& x, const RealVector& unit_normal) {
   std::vector<RealVector> rays;
   for (const auto& p : loop.container()) rays.push_back(real(chart.lift(p) - x));
   Real sum = 0;
@@ -157,33 +117,33 @@ Real contour_sum(const FlatPolygon& loop, const Chart& chart, const Point& x, co
 }
 
 /// An occluder facet's shadow on the source, as a convex loop in the source's plane.
-ExactLoop shadow(const ExactLoop& facet, const HalfSpace& source_plane, const std::vector<HalfSpace>& cone,
-                 const Point& x) {
-  if (plane_of(facet).value(x) == 0) return {};
-  ExactLoop between = clip(facet, source_plane);
-  for (const HalfSpace& side : cone) between = clip(between, side);
+ExactLoop shadow(const ExactLoop& facet, const ExactSide& source_plane, const std::vector<ExactSide>& cone,
+                 const ExactPoint& x) {
+  if (exact_plane(facet).value(x) == 0) return {};
+  ExactLoop between = clipped(facet, source_plane);
+  for (const ExactSide& side : cone) between = clipped(between, side);
   // Within the cone every point is nearer to the source's plane than x, so it projects to a finite one.
   const Rational height = source_plane.value(x);
-  for (Point& p : between) p = x + (height / (height - source_plane.value(p))) * (p - x);
+  for (ExactPoint& p : between) p = x + (height / (height - source_plane.value(p))) * (p - x);
   return between;
 }
 
-bool covers(const ExactLoop& facet, bool solid, const HalfSpace& source_plane) {
-  return !solid || plane_of(facet).normal * source_plane.normal < 0;
+bool covers(const ExactLoop& facet, bool solid, const ExactSide& source_plane) {
+  return !solid || exact_plane(facet).normal * source_plane.normal < 0;
 }
 
 /// What the occluders hide of the source's plane within the cone over the source.
-Region hidden_part(const ExactLoop& source, const Chart& chart, const Point& x,
+Region hidden_part(const ExactLoop& source, const Chart& chart, const ExactPoint& x,
                    const std::vector<Obstacle>& occluders) {
-  const HalfSpace& plane = chart.plane;
+  const ExactSide& plane = chart.plane;
   const auto cone = cone_over(source, x);
   std::vector<FlatPolygon> shadows;
   for (const Obstacle& occluder : occluders) {
     for (const Polygon& face : occluder.faces) {
       for (const Loop& loop : cut_into_facets(face)) {
-        const ExactLoop facet = exact(loop);
+        const ExactLoop facet = exact_loop(loop);
         const bool coplanar =
-            std::all_of(facet.begin(), facet.end(), [&](const Point& p) { return plane.value(p) == 0; });
+            std::all_of(facet.begin(), facet.end(), [&](const ExactPoint& p) { return plane.value(p) == 0; });
         if (coplanar && !covers(facet, occluder.solid, plane)) continue;
         const FlatPolygon flat = chart.flat(coplanar ? facet : shadow(facet, plane, cone, x));
         if (!flat.is_empty()) shadows.push_back(flat);
@@ -202,7 +162,7 @@ struct Measure {
   Rational flat_area = 0;  ///< in the chart
 };
 
-Measure measure(const Region& region, const Chart& chart, const Point& x, const RealVector& unit_normal) {
+Measure measure(const Region& region, const Chart& chart, const ExactPoint& x, const RealVector& unit_normal) {
   // Counter-clockwise in the chart is so from the front, too, if the normal points up the chart's axis; seen from there
   // the rotation is against the one Lambert's sum counts as positive.
   const int side = chart.plane.normal[chart.axis] > 0 ? -1 : 1;
@@ -228,8 +188,8 @@ Measure measure(const Region& region, const Chart& chart, const Point& x, const 
 OracleAnswer oracle_form_factor(const PointQuestion& given) {
   // CGAL's intervals overflow from 1e100 on. Powers of two round nothing.
   const auto [question, exponent] = scaled_near_one(given);
-  const Point x = exact(question.point);
-  const Vector normal = exact(question.normal) - CGAL::ORIGIN;
+  const ExactPoint x = exact_point(question.point);
+  const Vector normal = exact_point(question.normal) - CGAL::ORIGIN;
   RealVector unit_normal = real(normal);
   const Real length = sqrt(dot(unit_normal, unit_normal));
   unit_normal = {unit_normal.x / length, unit_normal.y / length, unit_normal.z / length};
@@ -237,10 +197,10 @@ OracleAnswer oracle_form_factor(const PointQuestion& given) {
   Real contour = 0, area = 0, open_contour = 0;
   bool is_all_seen = true;
   for (const Loop& loop : cut_into_facets(question.source)) {
-    const ExactLoop facet = exact(loop);
-    const Chart chart(plane_of(facet));
+    const ExactLoop facet = exact_loop(loop);
+    const Chart chart(exact_plane(facet));
     if (chart.plane.value(x) <= 0) continue;
-    const ExactLoop above = clip(facet, {x, normal});
+    const ExactLoop above = clipped(facet, {x, normal});
     const FlatPolygon source = chart.flat(above);
     if (source.is_empty()) continue;
     Region visible(source);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "src/dynamic/converged_reference.h"
-#include "src/dynamic/trespass.h"
+#include "src/scene/trespass.h"
 #include "tests/dynamic/rooms.h"
 
 namespace exitance {
@@ -265,12 +265,16 @@ TEST(EditSession, WhatStaysInTheUmbraIsKept) {
   EXPECT_LT(distance(session.solution()), 1e-10);
 }
 
+std::vector<std::string> trespass_of(const EditedScene& scene, const SceneVersion& version, std::uint32_t object) {
+  return find_trespass(scene, version.soup(), version.facet_ranges(), object);
+}
+
 TEST(Trespass, SaysWhatNoObjectCanDo) {
   EditedScene scene(test_room());
   const auto said = [&](const Vec3& by) {
     scene.apply(moved(1, by));
     const SceneVersion version(scene, {1.5, 1});
-    return find_trespass(scene, version, 1);
+    return trespass_of(scene, version, 1);
   };
   EXPECT_THAT(said({0, 0, 0}), IsEmpty());
   EXPECT_THAT(said({1.25, 0, 0}), IsEmpty()) << "against the wall";
@@ -283,7 +287,7 @@ TEST(Trespass, SaysNothingOfAnObjectThatIsAlone) {
   Scene scene = test_room();
   std::erase_if(scene.surfaces, [](const Surface& s) { return s.object != 1; });
   const EditedScene edited(scene);
-  EXPECT_THAT(find_trespass(edited, SceneVersion(edited, {1.5, 1}), 1), IsEmpty());
+  EXPECT_THAT(trespass_of(edited, SceneVersion(edited, {1.5, 1}), 1), IsEmpty());
 }
 
 // Versions that edits make know where objects are without looking at them all.
@@ -298,8 +302,8 @@ TEST(Trespass, SaysTheSameAfterEditsAsOfASceneMadeAnew) {
     if (k % 7 == 6 && edit.placement) edit.placement->translation = edit.placement->translation + Vec3{9, 0, 0};
     if (!scene.apply(edit).geometry) continue;
     version = std::make_shared<const SceneVersion>(*version, scene, MeshOptions{1.5, 1}, edit.object);
-    const auto after = find_trespass(scene, *version, edit.object);
-    EXPECT_EQ(after, find_trespass(scene, SceneVersion(scene, {1.5, 1}), edit.object)) << k;
+    const auto after = trespass_of(scene, *version, edit.object);
+    EXPECT_EQ(after, trespass_of(scene, SceneVersion(scene, {1.5, 1}), edit.object)) << k;
     said += after.size();
   }
   EXPECT_GT(said, 3u);
@@ -312,7 +316,7 @@ TEST(Trespass, SaysNothingOfWhatHasNoArea) {
   line.polygon.outer = {{1, 1, 1}, {2, 1, 1}, {1.5, 1, 1}};
   edit.shape = {line};
   scene.apply(edit);
-  EXPECT_THAT(find_trespass(scene, SceneVersion(scene, {1.5, 1}), 1), IsEmpty());
+  EXPECT_THAT(trespass_of(scene, SceneVersion(scene, {1.5, 1}), 1), IsEmpty());
 }
 
 }  // namespace

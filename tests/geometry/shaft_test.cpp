@@ -147,7 +147,7 @@ void check_pair(const PolygonSoup& soup, const ShaftOracle& oracle, Shaft& shaft
   const auto sides = sides_of_hull(a, b);
   std::vector<std::uint32_t> expected;
   Overlap expected_most = Overlap::outside;
-  for (const std::uint32_t index : oracle.items()) {
+  for (const std::uint32_t index : items_of(soup)) {
     const Overlap overlap = shaft.overlap(index);
     Overlap truth = oracle.overlap(a, b, sides, index);
     const ExactItem item = oracle.item(index);
@@ -316,7 +316,7 @@ TEST_P(ShaftPlacement, OfRoundedPiecesHoldsAlongLines) {
       const ExactEnd exact_a = third(i, a), exact_b = third(j, b);
       if (soup.facets()[i].polygon == soup.facets()[j].polygon || in_one_plane_but_for_rounding(oracle, i, j)) continue;
       shaft.reset({i, a}, {j, b});
-      for (const std::uint32_t item : oracle.items()) {
+      for (const std::uint32_t item : items_of(soup)) {
         const bool touches_end = std::ranges::any_of(std::array{i, j}, [&](std::uint32_t end) {
           return end == item || std::ranges::any_of(soup.coplanar(end), [&](std::uint32_t t) {
                    return item < n ? t == item : soup.facets()[t].shell == item - n;
