@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "src/scene/sample_site.h"
 #include "src/scene/scene_soup.h"
 
 namespace exitance {
@@ -81,6 +82,8 @@ SceneVersion::SceneVersion(const SceneVersion& before, const EditedScene& scene,
   }
   find_object(object);
   element_index_ = before.element_index_;
+  resampled_ = before.resampled_;
+  choose_samples(before, object);
   std::size_t elsewhere = 0;
   for (std::uint32_t k = 0; k < slots_.size(); ++k) {
     if (slots_[k].present && !is_indexed(k)) elsewhere += slots_[k].element_count;
@@ -201,30 +204,106 @@ void SceneVersion::find_object(std::uint32_t object) {
     object_of_patch_[p] = slot.present ? object + 1 : 0;
 }
 
+/// Of the elements that the object has come near to, or left.
+void SceneVersion::choose_samples(const SceneVersion& before, std::uint32_t object) {
+  SampleSite site(soup_);
+  const bool all = soup_.extent() != before.soup_.extent();
+  const double reach = site.reach();
+  const auto grown = [&](Box box) {
+    if (box.lower.x > box.upper.x) return box;
+    box.lower = box.lower - Vec3{reach, reach, reach};
+    box.upper = box.upper + Vec3{reach, reach, reach};
+    return box;
+  };
+  const Box was = grown(before.slots_[object].box), is = grown(slots_[object].box);
+  std::vector<std::uint32_t> patches;
+  if (!all) {
+    element_index_->patches.find(was, patches);
+    element_index_->patches.find(is, patches);
+    std::erase_if(patches, [&](std::uint32_t p) { return object_of_patch(p) == kVoid || !is_indexed(object_of_patch(p)); });
+  }
+  for (std::uint32_t k = 0; k < slots_.size(); ++k) {
+    if (!slots_[k].present || (!all && is_indexed(k))) continue;
+    for (std::uint32_t p = 0; p < slots_[k].patch_count; ++p) patches.push_back(slots_[k].patch_first + p);
+  }
+  std::ranges::sort(patches);
+  patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+  std::vector<std::uint32_t> moved;
+  const PatchMesh& mesh = mesh_;
+  for (const std::uint32_t p : patches) {
+    if (object_of_patch(p) == object) continue;
+    const Box box = box_of_patch(p);
+    if (!all && !box.overlaps(was) && !box.overlaps(is)) continue;
+    const Patch patch = mesh.patches[p];
+    for (std::uint32_t e = patch.element_first; e < patch.element_first + patch.element_count; ++e) {
+      const Vec3 sample = site.choose(mesh, mesh.elements[e]);
+      if (sample == mesh.elements[e].sample) continue;
+      mesh_.elements[e].sample = sample;
+      moved.push_back(e);
+    }
+  }
+  for (const std::uint32_t e : moved) {
+    const auto at = std::ranges::lower_bound(resampled_, e, {}, &Resampled::element);
+    if (at != resampled_.end() && at->element == e) {
+      at->serial = serial_;
+    } else {
+      resampled_.insert(at, {e, serial_});
+    }
+  }
+}
+
+std::vector<std::uint32_t> SceneVersion::resampled_since(const SceneVersion& other) const {
+  std::vector<std::uint32_t> found;
+  for (const Resampled& r : resampled_) {
+    if (has_element(r.element) && same_in(other, object_of_element(r.element)) &&
+        mesh_.elements[r.element].sample != other.mesh_.elements[r.element].sample)
+      found.push_back(r.element);
+  }
+  return found;
+}
+
+Box SceneVersion::box_of_patch(std::uint32_t patch) const {
+  Box box;
+  for (const PatchPiece& piece : mesh_.pieces_of(mesh_.patches[patch])) {
+    if (piece.loop_count == 0) box.extend(box_of(soup_, piece.facet));
+    for (const Vec3& corner : mesh_.loop(piece)) box.extend(corner);
+  }
+  return box;
+}
+
 void SceneVersion::index_elements() {
   const PatchMesh& mesh = mesh_;
-  std::vector<Box> boxes(mesh.elements.size());
-  for (std::uint32_t e = 0; e < boxes.size(); ++e) {
-    if (object_of_element(e) != kVoid) boxes[e].extend(mesh.elements[e].sample);
+  std::vector<Box> samples(mesh.elements.size()), patches(mesh.patches.size());
+  for (std::uint32_t e = 0; e < samples.size(); ++e) {
+    if (object_of_element(e) != kVoid) samples[e].extend(mesh.elements[e].sample);
   }
-  element_index_ = std::make_shared<const ElementIndex>(ElementIndex{SpatialIndex(boxes), slots_});
+  for (std::uint32_t p = 0; p < patches.size(); ++p) {
+    if (object_of_patch(p) != kVoid) patches[p] = box_of_patch(p);
+  }
+  element_index_ = std::make_shared<const ElementIndex>(
+      ElementIndex{SpatialIndex(samples), SpatialIndex(patches), slots_, serial_});
 }
 
 void SceneVersion::find_elements(std::span<const HalfSpace> region, std::vector<std::uint32_t>& found) const {
+  const auto lies_in = [&](std::uint32_t e) {
+    return std::ranges::all_of(region,
+                               [&](const HalfSpace& h) { return dot(h.normal, mesh_.elements[e].sample) >= h.offset; });
+  };
   const std::size_t first = found.size();
-  element_index_->index.find(region, element_index_->index.bounds(), found);
+  element_index_->samples.find(region, element_index_->samples.bounds(), found);
   const auto moved = [&](std::uint32_t e) {
     const std::uint32_t object = object_of_element(e);
     return object == kVoid || !is_indexed(object);
   };
   found.erase(std::remove_if(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(), moved), found.end());
+  for (const Resampled& r : resampled_) {
+    if (r.serial > element_index_->serial && !moved(r.element) && lies_in(r.element)) found.push_back(r.element);
+  }
   for (std::uint32_t k = 0; k < slots_.size(); ++k) {
     const ObjectSlot& slot = slots_[k];
     if (!slot.present || is_indexed(k)) continue;
     for (std::uint32_t e = slot.element_first; e < slot.element_first + slot.element_count; ++e) {
-      const Vec3& at = mesh_.elements[e].sample;
-      if (std::ranges::all_of(region, [&](const HalfSpace& h) { return dot(h.normal, at) >= h.offset; }))
-        found.push_back(e);
+      if (lies_in(e)) found.push_back(e);
     }
   }
 }

@@ -40,9 +40,10 @@ class SceneVersion {
   /// The first version of a scene.
   SceneVersion(const EditedScene& scene, const MeshOptions& options);
 
-  /// The version after an edit of the geometry of one object. Everything else keeps its elements and sample points; the
-  /// object is cut anew. Where it has as many patches and elements as before they take the same numbers, else new ones
-  /// behind all others. Shares with `before` what it can (PolygonSoup::edited).
+  /// The version after an edit of the geometry of one object. Everything else keeps its elements; the object is cut
+  /// anew. Where it has as many patches and elements as before they take the same numbers, else new ones behind all
+  /// others. Sample points are those of a first version of the scene (SampleSite): they make way where the object has
+  /// come to lie on them, and go back when it has left. Shares with `before` what it can (PolygonSoup::edited).
   SceneVersion(const SceneVersion& before, const EditedScene& scene, const MeshOptions& options, std::uint32_t object);
   SceneVersion(const SceneVersion&) = delete;
   SceneVersion& operator=(const SceneVersion&) = delete;
@@ -80,8 +81,11 @@ class SceneVersion {
     return slots_[object].present && other.slots_[object].present && slots_[object].pose == other.slots_[object].pose;
   }
 
-  /// Appends every element whose sample point lies in each of the half-spaces, ascending or not, and some that do not;
-  /// none that is void.
+  /// Elements that are the same in both but for their sample points, ascending.
+  std::vector<std::uint32_t> resampled_since(const SceneVersion& other) const;
+
+  /// Appends every element whose sample point lies in each of the half-spaces, ascending or not, and some that do not,
+  /// some more than once; none that is void.
   void find_elements(std::span<const HalfSpace> region, std::vector<std::uint32_t>& found) const;
 
   /// Of this thread, between patches of present objects.
@@ -98,12 +102,20 @@ class SceneVersion {
   void find_box(ObjectSlot& slot) const;
   void find_objects();
   void find_object(std::uint32_t object);
+  void choose_samples(const SceneVersion& before, std::uint32_t object);
+  Box box_of_patch(std::uint32_t patch) const;
   void index_elements();
 
-  /// Sample points as they were when it was made. Those of objects that have changed since are not used.
+  /// Sample points and patches as they were when it was made. Those of objects that have changed since are not used,
+  /// nor are sample points that have made way.
   struct ElementIndex {
-    SpatialIndex index;
+    SpatialIndex samples, patches;
     std::vector<ObjectSlot> slots;
+    std::uint64_t serial;
+  };
+  struct Resampled {
+    std::uint32_t element;
+    std::uint64_t serial;  ///< of the version in which its sample point moved last
   };
   /// The object's elements are where they were.
   bool is_indexed(std::uint32_t object) const {
@@ -118,6 +130,7 @@ class SceneVersion {
   std::vector<ObjectSlot> slots_;
   SharedRows<std::uint32_t> object_of_patch_;          ///< + 1; 0: nobody's
   std::shared_ptr<const ElementIndex> element_index_;  ///< shared by versions that follow each other
+  std::vector<Resampled> resampled_;                   ///< since the first version, by element
   mutable tbb::enumerable_thread_specific<std::unique_ptr<Observer>> observers_;
   mutable tbb::enumerable_thread_specific<std::unique_ptr<PatchSight>> sights_;
 };

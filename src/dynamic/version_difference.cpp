@@ -147,6 +147,7 @@ VersionDifference::VersionDifference(std::shared_ptr<const SceneVersion> before,
     : before_(std::move(before)),
       after_(std::move(after)),
       objects_(after_->changed_since(*before_)),
+      resampled_(after_->resampled_since(*before_)),
       scratch_([this] { return std::make_unique<Scratch>(*this); }) {
   const auto add = [](const SceneVersion& version, std::uint32_t object, auto& casters) {
     const ObjectSlot& slot = version.slot(object);
@@ -166,7 +167,7 @@ bool VersionDifference::keeps(std::uint32_t patch) const {
   return object != SceneVersion::kVoid && after_->same_in(*before_, object);
 }
 
-/// Elements that stay and may lie in a shadow; those of changed objects.
+/// Elements that stay and may lie in a shadow; those of changed objects, and those whose sample points have made way.
 void VersionDifference::find_candidates(std::uint32_t patch, std::vector<std::uint32_t>& found) const {
   Scratch& scratch = *scratch_.local();
   scratch.before.set_patch(patch);
@@ -181,6 +182,7 @@ void VersionDifference::find_candidates(std::uint32_t patch, std::vector<std::ui
     if (!slot.present) continue;
     for (std::uint32_t e = 0; e < slot.element_count; ++e) found.push_back(slot.element_first + e);
   }
+  found.insert(found.end(), resampled_.begin(), resampled_.end());
   std::ranges::sort(found);
   found.erase(std::unique(found.begin(), found.end()), found.end());
 }
@@ -234,8 +236,29 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
       scratch.stays_before.push_back(same_item(*after_, item, *before_, objects_));
     }
   };
+  const auto F = [&](PatchSight& sight, FormFactorChange& c, Shade shade) {
+    if (shade == Shade::umbra || !sight.sees()) return 0.0;
+    ++c.tests;
+    const PointFormFactor f = sight.form_factor(c.element);
+    c.error += f.error;
+    return f.F;
+  };
+  const auto look_before = [&](FormFactorChange& c, Shade shade) {
+    if (known != nullptr) {
+      c.before = entry(*known, c.element);
+      return;
+    }
+    if (!std::exchange(looked_before, true)) sight_before.set(receiver, patch);
+    c.before = F(sight_before, c, shade);
+  };
   for (FormFactorChange& c : changes) {
     ++work.candidates;
+    if (std::ranges::binary_search(resampled_, c.element)) {
+      look();
+      look_before(c, Shade::penumbra);
+      c.after = F(sight_after, c, Shade::penumbra);
+      continue;
+    }
     // The objects by themselves first, as that is soon done.
     Shade was = scratch.before.of(c.element, {}), is = scratch.after.of(c.element, {});
     if (was == Shade::outside && is == Shade::outside) continue;
@@ -256,24 +279,12 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
         continue;
       }
     }
-    const auto F = [&](PatchSight& sight, Shade shade) {
-      if (shade == Shade::umbra || !sight.sees()) return 0.0;
-      ++c.tests;
-      const PointFormFactor f = sight.form_factor(c.element);
-      c.error += f.error;
-      return f.F;
-    };
-    const auto look_before = [&] {
-      if (known != nullptr) return;
-      if (!std::exchange(looked_before, true)) sight_before.set(receiver, patch);
-      c.before = F(sight_before, was);
-    };
     if (is == Shade::outside && known == nullptr) {
-      c.after = F(sight_after, is);
-      if (c.after > 0) look_before();
+      c.after = F(sight_after, c, is);
+      if (c.after > 0) look_before(c, was);
     } else {
-      look_before();
-      if (was != Shade::outside || c.before > 0) c.after = F(sight_after, is);
+      look_before(c, was);
+      if (was != Shade::outside || c.before > 0) c.after = F(sight_after, c, is);
     }
   }
 }

@@ -42,7 +42,7 @@ struct ChangeWork {
 class VersionDifference {
  public:
   enum class Search : std::uint8_t {
-    shadow_volumes,  ///< only elements of changed objects and those in the shadow of one, old or new
+    shadow_volumes,  ///< only elements of changed objects, resampled ones and those in a shadow, old or new
     everywhere       ///< all elements: what a program without shadow volumes would do
   };
 
@@ -64,6 +64,7 @@ class VersionDifference {
   /// Left out are elements for which neither can differ; some that are given may be equal.
   ///  - An element of a changed object was not there (or stood elsewhere): its F^{t−1} is 0.
   ///  - A patch of a changed object is no longer there: its F^t is 0, and all elements that see it are given.
+  ///  - An element whose sample point has made way is given with what both of its points see.
   ///  - Else elements whose view of the patch meets a changed object as it was or as it is.
   /// known: the patch's column in `before`, if there is one: F^{t−1} is not computed then.
   /// rows: of elements of a changed object in `after`: their F^t is not computed either.
@@ -82,6 +83,7 @@ class VersionDifference {
 
   std::shared_ptr<const SceneVersion> before_, after_;
   std::vector<std::uint32_t> objects_;
+  std::vector<std::uint32_t> resampled_;                  ///< elements
   std::vector<std::unique_ptr<ShadowCaster>> old_, new_;  ///< the objects' shapes before and after
   mutable tbb::enumerable_thread_specific<std::unique_ptr<Scratch>> scratch_;
 };

@@ -431,15 +431,9 @@ class Mesher {
     element.piece_count = piece_end - piece_first;
     element.loop_first = loop_first;
     element.loop_count = loop_count;
-    const PatchPiece* largest = nullptr;
-    for (const PatchPiece& piece : mesh_.pieces_of(element)) {
-      element.area += piece.area;
-      if (!largest || piece.area > largest->area) largest = &piece;
-    }
-    element.facet = largest->facet;
-    element.sample = samples_.choose(
-        largest->facet,
-        largest->loop_count > 0 ? mesh_.loop(*largest) : std::span<const Vec3>(facets_[largest->facet - first_facet_]));
+    for (const PatchPiece& piece : mesh_.pieces_of(element)) element.area += piece.area;
+    element.facet = std::ranges::max_element(mesh_.pieces_of(element), {}, &PatchPiece::area)->facet;
+    element.sample = samples_.choose(mesh_, element);
     element.normal = unit_normal(soup_.facets()[element.facet].plane);
     mesh_.elements.push_back(element);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/radiator.h"
+#include "src/scene/patch_mesh.h"
 
 namespace exitance {
 namespace {
@@ -32,7 +33,7 @@ Vec3 centroid(std::span<const Vec3> loop) {
 
 Vec3 SampleSite::choose(std::uint32_t facet, std::span<const Vec3> loop) {
   const Vec3 middle = centroid(loop);
-  double enough = kEnough * soup_.extent();
+  double enough = reach();
   for (const Vec3& corner : loop) enough = std::min(enough, kEnoughOfElement * norm(corner - middle));
   Vec3 best = middle;
   double farthest = clearance(middle, facet, enough);
@@ -48,6 +49,18 @@ Vec3 SampleSite::choose(std::uint32_t facet, std::span<const Vec3> loop) {
     }
   }
   return best;
+}
+
+Vec3 SampleSite::choose(const PatchMesh& mesh, const Element& element) {
+  const PatchPiece& piece = *std::ranges::max_element(mesh.pieces_of(element), {}, &PatchPiece::area);
+  if (piece.loop_count > 0) return choose(piece.facet, mesh.loop(piece));
+  loop_.clear();
+  for (const Corner& corner : soup_.corners(soup_.facets()[piece.facet])) loop_.push_back(corner.at);
+  return choose(piece.facet, loop_);
+}
+
+double SampleSite::reach() const {
+  return kEnough * soup_.extent();
 }
 
 /// Distance to the nearest hindrance, at most `enough`.

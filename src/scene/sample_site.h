@@ -9,6 +9,9 @@
 
 namespace exitance {
 
+struct Element;    // patch_mesh.h
+struct PatchMesh;  // likewise
+
 /// Of a convex loop [m].
 Vec3 centroid(std::span<const Vec3> loop);
 
@@ -26,12 +29,19 @@ class SampleSite {
   /// in the facet's plane and reaches beyond that distance all around is no hindrance.
   Vec3 choose(std::uint32_t facet, std::span<const Vec3> loop);
 
+  /// Of an element: a point of its largest piece.
+  Vec3 choose(const PatchMesh& mesh, const Element& element);
+
+  /// [m] What is farther from a piece than this does not matter to its point.
+  double reach() const;
+
  private:
   double clearance(const Vec3& p, std::uint32_t facet, double enough);
   double clearance_of(const Vec3& p, const Facet& other, const Facet& own, double enough) const;
 
   const PolygonSoup& soup_;
   std::vector<std::uint32_t> found_;
+  std::vector<Vec3> loop_;
 };
 
 }  // namespace exitance

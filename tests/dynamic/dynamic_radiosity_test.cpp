@@ -241,6 +241,59 @@ TEST(DynamicRadiosity, ASolidThatTwoObjectsCloseChangesWithEither) {
   }
 }
 
+/// Whether all sample points are those of a mesh that was made of the scene as it is now.
+void expect_samples_of_a_new_mesh(const EditedScene& edited, const SceneVersion& version, const MeshOptions& mesh) {
+  const SceneVersion fresh(edited, mesh);
+  for (std::uint32_t k = 0; k < version.objects(); ++k) {
+    const ObjectSlot &slot = version.slot(k), &there = fresh.slot(k);
+    ASSERT_EQ(slot.present, there.present);
+    for (std::uint32_t e = 0; slot.present && e < slot.element_count; ++e) {
+      const Element &own = version.mesh().elements[slot.element_first + e],
+                    &new_one = fresh.mesh().elements[there.element_first + e];
+      ASSERT_EQ(own.sample, new_one.sample) << "object " << k << ", element " << e;
+    }
+  }
+}
+
+/// The test room, turned.
+Scene turned_test_room(double degrees) {
+  Scene scene = test_room();
+  const Placement turn{rotation({1, 2, 3}, degrees), {}};
+  for (auto* surfaces : {&scene.surfaces, &scene.absent}) {
+    for (Surface& surface : *surfaces) {
+      for (Vec3& corner : surface.polygon.outer) corner = turn(corner);
+    }
+  }
+  return scene;
+}
+
+// Elements of 0.75 m have centres at odd multiples of 0.375 m: edges of the moved box pass through some of the floor.
+TEST(DynamicRadiosity, SamplePointsMakeWayForEdgesAndGoBack) {
+  for (const double degrees : {0.0, 25.0}) {
+    Followed room(turned_test_room(degrees), {1.5, 2});
+    const auto first = room.state.shared_version();
+    const auto move = [&](const Vec3& by) {
+      Edit edit{Operation::move, 1, Placement{}, {}, {}};
+      edit.placement->translation = Placement{rotation({1, 2, 3}, degrees), {}}(by);
+      room.apply(edit);
+    };
+    room.shoot(100);
+    for (const bool gathers : {false, true}) {
+      room.gathers = gathers;
+      move({0.125, 0.125, 0});  // from 1.125 to 1.875: two edges, and a corner, on centres
+      EXPECT_GE(room.state.version().resampled_since(*first).size(), 4u) << degrees;
+      expect_samples_of_a_new_mesh(room.edited, room.state.version(), {1.5, 2});
+      room.finish();
+      EXPECT_LT(largest_difference(room.state.element_B(), converged_reference(room.state)), 1e-10) << degrees;
+      move({0, 0, 0});
+      EXPECT_THAT(room.state.version().resampled_since(*first), testing::IsEmpty());
+      room.shoot(20);
+    }
+    room.finish();
+    EXPECT_LT(largest_difference(room.state.element_B(), converged_reference(room.state)), 1e-10) << degrees;
+  }
+}
+
 // The most important test: 100 random edits, interrupted anywhere.
 TEST(DynamicRadiosity, AHundredRandomEditsInterruptedAnywhereEqualSolvingFromScratch) {
   RandomEdits random(5);
@@ -253,6 +306,7 @@ TEST(DynamicRadiosity, AHundredRandomEditsInterruptedAnywhereEqualSolvingFromScr
     most_pending = std::max(most_pending, room.state.pending_changes());
     if (k % 25 != 24) continue;
     room.finish();
+    expect_samples_of_a_new_mesh(room.edited, room.state.version(), kMesh);
     EXPECT_LT(largest_difference(room.state.element_B(), converged_reference(room.state)), 1e-10) << "edit " << k;
   }
   EXPECT_GT(most_pending, 5u) << "several changes were open at a time";
@@ -262,11 +316,13 @@ TEST(DynamicRadiosity, ShadowVolumesMissNothingThatLookingEverywhereFinds) {
   RandomEdits random(11);
   EditedScene edited(test_room());
   auto version = std::make_shared<const SceneVersion>(edited, MeshOptions{1.0, 1});
-  std::uint64_t changed = 0;
+  std::uint64_t changed = 0, resampled = 0;
   for (int k = 0; k < 20; ++k) {
     const Edit edit = random.next(edited);
     if (!edited.apply(edit).geometry) continue;
     const auto next = std::make_shared<const SceneVersion>(*version, edited, MeshOptions{1.0, 1}, edit.object);
+    expect_samples_of_a_new_mesh(edited, *next, {1.0, 1});
+    resampled += next->resampled_since(*version).size();
     const VersionDifference difference(version, next);
     for (std::uint32_t p = 0; p < version->patches(); ++p) {
       if (version->object_of_patch(p) == SceneVersion::kVoid) continue;
@@ -286,6 +342,7 @@ TEST(DynamicRadiosity, ShadowVolumesMissNothingThatLookingEverywhereFinds) {
     version = next;
   }
   EXPECT_GT(changed, 1000u);
+  EXPECT_GT(resampled, 0u);
 }
 
 TEST(DynamicRadiosity, AnyNumberOfThreadsGivesTheSameBits) {
