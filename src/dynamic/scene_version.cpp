@@ -220,7 +220,8 @@ void SceneVersion::choose_samples(const SceneVersion& before, std::uint32_t obje
   if (!all) {
     element_index_->patches.find(was, patches);
     element_index_->patches.find(is, patches);
-    std::erase_if(patches, [&](std::uint32_t p) { return object_of_patch(p) == kVoid || !is_indexed(object_of_patch(p)); });
+    std::erase_if(patches,
+                  [&](std::uint32_t p) { return object_of_patch(p) == kVoid || !is_indexed(object_of_patch(p)); });
   }
   for (std::uint32_t k = 0; k < slots_.size(); ++k) {
     if (!slots_[k].present || (!all && is_indexed(k))) continue;
@@ -280,8 +281,8 @@ void SceneVersion::index_elements() {
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
     if (object_of_patch(p) != kVoid) patches[p] = box_of_patch(p);
   }
-  element_index_ = std::make_shared<const ElementIndex>(
-      ElementIndex{SpatialIndex(samples), SpatialIndex(patches), slots_, serial_});
+  element_index_ =
+      std::make_shared<const ElementIndex>(ElementIndex{SpatialIndex(samples), SpatialIndex(patches), slots_, serial_});
 }
 
 void SceneVersion::find_elements(std::span<const HalfSpace> region, std::vector<std::uint32_t>& found) const {
