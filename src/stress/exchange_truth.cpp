@@ -4,180 +4,22 @@
 #include <array>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <queue>
 #include <stdexcept>
 
 #include "src/stress/placement.h"
+#include "src/stress/projected_area.h"
+#include "src/stress/truth_body.h"
 
 namespace exitance {
 namespace {
 
-using Real = long double;
+using namespace truth;
+
 constexpr Real kPi = std::numbers::pi_v<Real>;
 /// In units of the configuration's size: by how much an event may seem hidden before it is left out.
 constexpr Real kTouch = 1e-12L;
-
-struct Point {
-  Real x = 0, y = 0, z = 0;
-};
-Point operator-(const Point& a, const Point& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-Point operator+(const Point& a, const Point& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-Point operator*(Real s, const Point& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-Real dot(const Point& a, const Point& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Point cross(const Point& a, const Point& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-Point unit(const Point& a) {
-  return (1 / std::sqrt(dot(a, a))) * a;
-}
-bool operator<(const Point& a, const Point& b) {
-  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-}
-
-using Face = std::vector<Point>;
-
-struct Side {
-  Point normal, origin;
-  Real at(const Point& p) const { return dot(normal, p - origin); }
-};
-
-Side plane_of(const Face& loop) {
-  Point n;
-  for (std::size_t k = 1; k + 1 < loop.size(); ++k) n = n + cross(loop[k] - loop[0], loop[k + 1] - loop[0]);
-  return {unit(n), loop[0]};
-}
-
-/// What of a face lies in front of a plane; points within rounding of it are on it.
-Face clip(const Face& face, const Side& side, Real rounding) {
-  std::vector<Real> height;
-  for (const Point& p : face) {
-    const Real h = side.at(p);
-    height.push_back(std::fabs(h) <= rounding ? 0 : h);
-  }
-  Face kept;
-  for (std::size_t k = 0; k < face.size(); ++k) {
-    const std::size_t next = (k + 1) % face.size();
-    if (height[k] >= 0) kept.push_back(face[k]);
-    if ((height[k] > 0 && height[next] < 0) || (height[k] < 0 && height[next] > 0)) {
-      // From the lower point up, whichever way the face runs: neighbours share the new point, bit for bit.
-      const bool up = height[k] < 0;
-      const Point &low = up ? face[k] : face[next], &high = up ? face[next] : face[k];
-      const Real a = up ? height[k] : height[next], b = up ? height[next] : height[k];
-      kept.push_back(low + (a / (a - b)) * (high - low));
-    }
-  }
-  return kept.size() < 3 ? Face{} : kept;
-}
-
-struct Body {
-  std::vector<Point> points;
-  std::vector<std::array<std::size_t, 2>> edges;
-};
-
-Body body_of(const std::vector<Face>& faces) {
-  Body body;
-  std::map<Point, std::size_t> number;
-  for (const Face& face : faces) {
-    for (const Point& p : face) {
-      if (number.emplace(p, body.points.size()).second) body.points.push_back(p);
-    }
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      std::size_t a = number[face[k]], b = number[face[(k + 1) % face.size()]];
-      if (a > b) std::swap(a, b);
-      if (a != b && std::ranges::find(body.edges, std::array{a, b}) == body.edges.end()) body.edges.push_back({a, b});
-    }
-  }
-  return body;
-}
-
-/// Whether a plane through three corners of the two polygons has both on one side and the body on the other.
-bool is_beside(const Body& body, const Face& a, const Face& b, Real rounding) {
-  Face corners = a;
-  corners.insert(corners.end(), b.begin(), b.end());
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    for (std::size_t j = i + 1; j < corners.size(); ++j) {
-      for (std::size_t k = j + 1; k < corners.size(); ++k) {
-        const Point n = cross(corners[j] - corners[i], corners[k] - corners[i]);
-        const Real size = std::sqrt(dot(n, n));
-        if (!(size > 0)) continue;
-        for (const Real sign : {1, -1}) {
-          const Side side{(sign / size) * n, corners[i]};
-          const auto below = [&](const Point& p) { return side.at(p) <= rounding; };
-          const auto above = [&](const Point& p) { return side.at(p) >= -rounding; };
-          if (std::ranges::all_of(corners, below) && std::ranges::all_of(body.points, above)) return true;
-        }
-      }
-    }
-  }
-  return false;
-}
-
-struct Spot {
-  Real x = 0, y = 0;
-};
-using Area = std::vector<Spot>;
-
-Real area(const Area& loop) {
-  Real sum = 0;
-  for (std::size_t k = 1; k + 1 < loop.size(); ++k) {
-    sum +=
-        (loop[k].x - loop[0].x) * (loop[k + 1].y - loop[0].y) - (loop[k + 1].x - loop[0].x) * (loop[k].y - loop[0].y);
-  }
-  return sum / 2;
-}
-
-/// Left of the line a b.
-Real left(const Spot& a, const Spot& b, const Spot& p) {
-  return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
-}
-
-/// Counter-clockwise, by monotone chains.
-void hull(std::vector<Spot>& spots, Area& out) {
-  std::ranges::sort(spots, [](const Spot& a, const Spot& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-  out.clear();
-  for (int chain = 0; chain < 2; ++chain) {
-    const std::size_t base = out.size();
-    for (const Spot& s : spots) {
-      while (out.size() >= base + 2 && left(out[out.size() - 2], out.back(), s) <= 0) out.pop_back();
-      out.push_back(s);
-    }
-    out.pop_back();
-    std::ranges::reverse(spots);
-  }
-}
-
-/// Cuts a convex loop along the line a b into what lies left of it and what lies right.
-void split(const Area& loop, const Spot& a, const Spot& b, Area& inside, Area& outside) {
-  inside.clear();
-  outside.clear();
-  Real before = left(a, b, loop.back());
-  Spot from = loop.back();
-  for (const Spot& p : loop) {
-    const Real now = left(a, b, p);
-    if ((before > 0 && now < 0) || (before < 0 && now > 0)) {
-      const Real t = before / (before - now);
-      const Spot at{from.x + t * (p.x - from.x), from.y + t * (p.y - from.y)};
-      inside.push_back(at);
-      outside.push_back(at);
-    }
-    if (now >= 0) inside.push_back(p);
-    if (now <= 0) outside.push_back(p);
-    before = now;
-    from = p;
-  }
-  if (inside.size() < 3) inside.clear();
-  if (outside.size() < 3) outside.clear();
-}
 
 using Rule = boost::math::quadrature::gauss_kronrod<Real, 21>;
 using Gauss = boost::math::quadrature::gauss<Real, 10>;
