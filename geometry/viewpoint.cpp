@@ -101,6 +101,7 @@ struct Viewpoint::State {
   bool add_candidate(const OccluderId& occluder);
   bool hidden_by_recent();
   bool find_candidates(std::uint32_t facet);
+  void bound_across_axes(double reach);
   bool add_flush_faces(std::uint32_t facet);
   bool add_items(std::span<const std::uint32_t> items);
   void choose_silhouettes();
@@ -195,6 +196,29 @@ bool Viewpoint::State::hidden_by_recent() {
   return false;
 }
 
+/// Adds half-spaces that hold the way to the source in its shadow along each axis, a wedge unless the point's own shadow
+/// lies within that of the source. No side of the cone need be near these planes, and only such as hold an axis keep a
+/// box away that a thin cone passes by at a slant.
+void Viewpoint::State::bound_across_axes(double reach) {
+  const Vec3 x = view.receiver().point;
+  for (const int axis : {0, 1, 2}) {
+    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    for (const double turn : {1.0, -1.0}) {
+      Vec3 normal;
+      const auto height = [&](const Vec3* v) { return normal[b] * ((*v)[b] - x[b]) + normal[c] * ((*v)[c] - x[c]); };
+      for (const Vec3* v : corners) {
+        if (height(v) >= 0 && normal != Vec3{}) continue;
+        normal = Vec3{};
+        normal[b] = -turn * ((*v)[c] - x[c]);
+        normal[c] = turn * ((*v)[b] - x[b]);
+      }
+      if (!std::ranges::all_of(corners, [&](const Vec3* v) { return height(v) >= 0; })) continue;
+      const double size = std::fabs(normal[b]) + std::fabs(normal[c]);
+      half_spaces.push_back({normal, dot(normal, x) - 16 * kRoundoff * size * reach});
+    }
+  }
+}
+
 /// Looks for everything that hides something of the current source from the point; false when all of it is hidden.
 bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   if (hidden_by_recent()) {
@@ -212,6 +236,7 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
     const Vec3 m{side.m.x, side.m.y, side.m.z};
     half_spaces.push_back({m, dot(m, view.receiver().point) - (side.error + 16 * kRoundoff * side.length) * reach});
   }
+  bound_across_axes(reach);
   const Plane& plane = soup.facets()[facet].plane;
   const Vec3 normal = side_of(plane, view.receiver().point, view.counts()) * plane.normal;
   half_spaces.push_back({view.receiver().normal, dot(view.receiver().normal, view.receiver().point) -
