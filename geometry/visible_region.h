@@ -486,11 +486,20 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_cone(Added& added,
   const Cone<Real>& cone = *added.cone;
   if (is_apart(cone)) return Effect::none;
 
-  // Apart, by a side of the occluder? And of each of the source's edges, which stretch does it cover?
+  // Of the source's edges those are out of the cone's reach in whose plane it has no corner, nor beyond it.
   within_.clear();
-  for (const auto& side : source_.sides) within_.push_back(side.stretch);
-  bool whole = true;
-  for (const auto& side : cone.sides) {
+  bool inside = true;
+  for (std::size_t k = 0; k < source_.sides.size(); ++k) {
+    within_.push_back(source_.sides[k].stretch);
+    if (source_rows_[k].all_positive()) {
+      within_.back().empty = true;
+    } else {
+      inside = false;
+    }
+  }
+  // Apart, by a side of the occluder? And of each of the source's edges, which stretch does it cover?
+  bool whole = !inside;
+  for (const auto& side : std::span(cone.sides).first(inside ? 0 : cone.sides.size())) {
     fill(row_, side, source_);
     if (!row_.any_positive()) return Effect::none;
     if (row_.all_positive()) continue;
