@@ -40,6 +40,17 @@ struct Box {
   }
 };
 
+/// Of normal · (v − origin) for all v in a box, less than the least by more than the rounding of three sums of products;
+/// normal_error: of each of the normal's components.
+inline double least_height(const Box& box, const Vec3& normal, const Vec3& origin, double normal_error) {
+  const Vec3 middle = 0.5 * box.lower + 0.5 * box.upper, half = box.upper - middle, w = middle - origin;
+  const Vec3 size{std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)};
+  const double reach = std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z) + half.x + half.y + half.z;
+  const double margin = (2 * normal_error + 0x1p-48 * (size.x + size.y + size.z)) *
+                        (reach + std::fabs(middle.x) + std::fabs(middle.y) + std::fabs(middle.z));
+  return dot(normal, w) - dot(size, half) - margin;
+}
+
 /// The half-space normal · v ≥ offset. Whoever makes it lowers the offset by its own rounding errors.
 struct HalfSpace {
   Vec3 normal;

@@ -178,6 +178,7 @@ class VisibleRegion {
   ViewFrame frame_;
   std::uint32_t source_facet_ = kNone;
   const Plane* source_plane_ = nullptr;
+  std::span<const std::uint32_t> coplanar_;  // with the source
   int facing_source_ = 1;
   double per_bearable_angle_ = kFinestPerAngle;
   std::optional<std::span<const std::uint32_t>> added_only_;
@@ -203,6 +204,7 @@ bool VisibleRegion<Real>::set_source(std::uint32_t facet, int facing, PointLoop 
                                      const Drop* drop) {
   source_facet_ = facet;
   source_plane_ = &soup_.facets()[facet].plane;
+  coplanar_ = soup_.coplanar(facet);
   drop_ = drop;
   frame_ = drop ? drop->frame : ViewFrame{view_.receiver().point, view_.receiver().normal, source_plane_->points};
   facing_source_ = facing;
@@ -290,18 +292,12 @@ void VisibleRegion<Real>::narrow_to_crossing(Stretch<Real>& stretch, const Row<R
 
 template <class Real>
 typename VisibleRegion<Real>::Place VisibleRegion<Real>::place_of(const Shell& shell) {
-  // Of most shells the whole box lies in front and above, clear of the roundings of a sum of products.
-  const Vec3 n = view_.receiver().normal, m = facing_source_ * source_plane_->normal, x = view_.receiver().point;
-  const Vec3 middle = 0.5 * shell.box.lower + 0.5 * shell.box.upper, half = shell.box.upper - middle;
-  const auto least = [&](const Vec3& normal, const Vec3& origin, double normal_error) {
-    const Vec3 size{std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)};
-    const Vec3 w = middle - origin;
-    const double reach = std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z) + half.x + half.y + half.z;
-    const double margin = (2 * normal_error + 0x1p-48 * (size.x + size.y + size.z)) *
-                          (reach + std::fabs(middle.x) + std::fabs(middle.y) + std::fabs(middle.z));
-    return dot(normal, w) - dot(size, half) - margin;
-  };
-  if (least(m, source_plane_->origin, source_plane_->normal_error) > 0 && least(n, x, 0) > 0) return Place::in_front;
+  // Of most shells the whole box lies in front and above.
+  const Vec3 m = facing_source_ * source_plane_->normal;
+  if (least_height(shell.box, m, source_plane_->origin, source_plane_->normal_error) > 0 &&
+      view_.surely_above(shell.box)) {
+    return Place::in_front;
+  }
   bool in_front = false, behind = false, above = false;
   for (const std::uint32_t v : shell.vertices) {
     above = above || view_.horizon(v) > 0;
@@ -337,8 +333,7 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
   const int facing = view_.facing(facet);
   if (facing == 0 || facet == source_facet_) return Effect::none;
   const auto loop = soup_.corners(f);
-  const auto coplanar = soup_.coplanar(source_facet_);
-  const bool in_plane = std::binary_search(coplanar.begin(), coplanar.end(), facet);
+  const bool in_plane = std::ranges::binary_search(coplanar_, facet);
   const bool covers =
       in_plane && (facing_source_ > 0 ? soup_.covers(facet, source_facet_) : soup_.covers_back(facet, source_facet_));
   // Facets of one polygon that lie in one plane only up to rounding may hide each other by as little.
@@ -386,10 +381,7 @@ bool VisibleRegion<Real>::goes_on(const ConeSide<Real>& side, const Facet& occlu
   const Facet& neighbour = soup_.facets()[n];
   const bool of_convex_shell = neighbour.shell != kNone && soup_.shells()[neighbour.shell].convex;
   if (added_only_ && !of_convex_shell && !std::ranges::binary_search(*added_only_, n)) return false;
-  if (covers) {
-    const auto coplanar = soup_.coplanar(source_facet_);
-    return neighbour.polygon == occluder.polygon && std::binary_search(coplanar.begin(), coplanar.end(), n);
-  }
+  if (covers) return neighbour.polygon == occluder.polygon && std::ranges::binary_search(coplanar_, n);
   const auto loop = soup_.corners(occluder);
   const auto side_of_source = [&](const Corner& c) {
     return facing_source_ * side_of(*source_plane_, c.at, view_.counts());
