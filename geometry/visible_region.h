@@ -115,6 +115,8 @@ class VisibleRegion {
     const Silhouette<Real>* silhouette = nullptr;  // of a shell that is not convex; `cone` is its edges
     std::uint32_t shell = kNone;
     Cone<Real> clipped;
+    SideBlocks<Real> sides;            // of the cone, if there is no silhouette, once they are asked for
+    bool has_sides = false;
     std::vector<Stretch<Real>> edges;  // empty: bounds nothing
     bool bounds = false;               // whether any edge does
   };
@@ -137,7 +139,7 @@ class VisibleRegion {
 
   Signed<Real> plane_value(const Plane& plane, const Vec3& v, int sign) const;
   ConeSide<Real> closing_cut(const Plane& T, int facing_occluder) const;
-  bool cover(const Added& a, const Added& b, bool b_first);
+  bool cover(const Added& a, Added& b, bool b_first);
   bool cover_by_silhouette(const Added& a, const Added& b);
   Evaluation evaluation() { return {frame_, view_.counts(), per_bearable_angle_}; }
 
@@ -163,10 +165,10 @@ class VisibleRegion {
                     const ConeSide<Real>& side) {
     const int from = row.sign(edge.from), to = row.sign(edge.to);
     if (from <= 0 && to <= 0) stretch.empty = true;
-    if (from * to < 0) narrow_to_crossing(stretch, row, cone, edge, side);
+    if (from * to < 0) narrow_to_crossing(stretch, row.at(edge.from), row.at(edge.to), cone, edge, side);
   }
-  void narrow_to_crossing(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone,
-                          const ConeSide<Real>& edge, const ConeSide<Real>& side);
+  void narrow_to_crossing(Stretch<Real>& stretch, const Signed<Real>& from, const Signed<Real>& to,
+                          const Cone<Real>& cone, const ConeSide<Real>& edge, const ConeSide<Real>& side);
 
   template <class Sink>
   void finish_edge(const Cone<Real>& cone, const ConeSide<Real>& side, const Stretch<Real>& edge,
@@ -188,6 +190,7 @@ class VisibleRegion {
   std::vector<std::vector<Stretch<Real>>> covered_source_;  // by source side
   std::vector<std::vector<Stretch<Real>>> covered_;         // by side of the occluder being finished
   Row<Real> row_;
+  Columns<Real> columns_;
   LayersOverEdge<Real> layers_;
   std::vector<std::size_t> covered_before_;  // sizes of covered_source_ before a solid was met with the source
   std::vector<Row<Real>> source_rows_;       // of each of the source's sides, at the occluder that is being added
@@ -278,11 +281,12 @@ ConeSide<Real> VisibleRegion<Real>::closing_cut(const Plane& T, int facing_occlu
   return side;
 }
 
-/// Narrows a stretch of an edge of a cone to where it is inside of the side whose values at the cone are in the row.
+/// Narrows a stretch of an edge of a cone to where it is inside of a side, whose values at the edge's ends are given.
 template <class Real>
-void VisibleRegion<Real>::narrow_to_crossing(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone,
-                                             const ConeSide<Real>& edge, const ConeSide<Real>& side) {
-  narrow(stretch, row.at(edge.from), row.at(edge.to), evaluation().weight(edge.sweep),
+void VisibleRegion<Real>::narrow_to_crossing(Stretch<Real>& stretch, const Signed<Real>& from, const Signed<Real>& to,
+                                             const Cone<Real>& cone, const ConeSide<Real>& edge,
+                                             const ConeSide<Real>& side) {
+  narrow(stretch, from, to, evaluation().weight(edge.sweep),
          [&](Signed<Real>& a, Signed<Real>& b, double accuracy) {
            if constexpr (!std::is_floating_point_v<Real>) return;
            a = refined_value_at(side, cone.corners.exact(edge.from), frame_, view_.counts(), accuracy);
@@ -520,6 +524,7 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_cone(Added& added,
     added.bounds = added.bounds || !stretch.empty;
     added.edges.push_back(stretch);
   }
+  added.has_sides = false;
   chart_.set(count_, chart_.box_of(cone));
   ++count_;
   return Effect::part;
@@ -571,40 +576,32 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_silhouette(Added& 
 /// Adds to covered_ the stretches of a's edges, those of `open_`, that b covers on their outer sides, or stands for.
 /// False when no edge of a is left that is not surely covered from end to end.
 template <class Real>
-bool VisibleRegion<Real>::cover(const Added& a, const Added& b, bool b_first) {
+bool VisibleRegion<Real>::cover(const Added& a, Added& b, bool b_first) {
   if (b.silhouette) return cover_by_silhouette(a, b);
+  if (!b.has_sides) b.sides.set(b.cone->sides);
+  b.has_sides = true;
   const Cone<Real>& cone = *a.cone;
-  const std::size_t n = cone.sides.size();
-  within_ = open_;
-  for (Stretch<Real>& stretch : within_) stretch.narrow = false;
-  std::size_t left = n;
-  for (const auto& side : b.cone->sides) {
-    fill(row_, side, cone);
-    if (row_.all_positive()) continue;
-    if (row_.all_negative()) return true;
-    left = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      if (within_[k].empty) continue;
-      if (lies_in(row_, cone.sides[k])) {
-        if (a.silhouette) {
-          within_[k].empty = gradient_sign(frame_, side.exact) < 0;
-          left += !within_[k].empty;
-          continue;
-        }
-        // On one line. On opposite sides of it b covers a's outer side; on the same side, the first stands for both.
-        if (row_.any_positive() && !b_first) within_[k].empty = true;
-      } else {
-        narrow_along(within_[k], row_, cone, cone.sides[k], side);
-      }
-      left += !within_[k].empty;
-    }
-    if (left == 0) return true;
-  }
   bool any_open = false;
-  for (std::size_t k = 0; k < n; ++k) {
-    if (!within_[k].empty) {
-      covered_[k].push_back(within_[k]);
-      open_[k].empty = !within_[k].narrow;
+  for (std::size_t k = 0; k < cone.sides.size(); ++k) {
+    if (open_[k].empty) continue;
+    const ConeSide<Real>& edge = cone.sides[k];
+    Stretch<Real> within = open_[k];
+    within.narrow = false;
+    const auto narrow_to = [&](const ConeSide<Real>& side, const Signed<Real>& from, const Signed<Real>& to) {
+      if (from.sign * to.sign < 0) {
+        narrow_to_crossing(within, from, to, cone, edge, side);
+        return true;
+      }
+      if (from.sign != 0 || to.sign != 0) return false;
+      // On one line. On opposite sides of it b covers a's outer side; on the same side, the first stands for both.
+      if (a.silhouette) return gradient_sign(frame_, side.exact) >= 0;
+      if (b_first) return true;
+      fill(row_, side, cone);
+      return !row_.any_positive();
+    };
+    if (columns_.each(b.sides, cone.corners, edge, frame_, view_.counts(), narrow_to)) {
+      covered_[k].push_back(within);
+      open_[k].empty = !within.narrow;
     }
     any_open = any_open || !open_[k].empty;
   }
