@@ -110,7 +110,7 @@ struct Viewpoint::State {
     by_silhouette.clear();
   }
   bool is_of_silhouette(std::uint32_t facet) const {
-    const std::uint32_t shell = soup.facets()[facet].shell;
+    const std::uint32_t shell = soup.first_corners(facet).shell;
     return shell != kNone && in_silhouette[shell] != 0;
   }
   bool prepare(const Source& source, int& source_facing);
@@ -146,7 +146,7 @@ struct Viewpoint::State {
   std::vector<double> heights;
   std::optional<Drop> dropped;  // if its corners lie in its plane up to rounding only
   std::vector<HalfSpace> half_spaces;
-  std::vector<std::uint32_t> found;
+  std::vector<std::uint32_t> found, left;    // items, and those that do not miss the source at a glance
   std::vector<std::uint32_t> by_silhouette;  // shells
   std::vector<std::uint32_t> in_silhouette;  // by shell: not 0 for those
 };
@@ -249,7 +249,7 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   if (!add_flush_faces(facet)) return false;
   found.clear();
   soup.index().find(half_spaces, box, found);
-  soup.prefetch(found);
+  soup.prefetch_corners(found);
   choose_silhouettes();
   return std::ranges::all_of(by_silhouette, [&](std::uint32_t s) { return add_candidate({kNone, s}); }) &&
          add_items(found);
@@ -262,7 +262,7 @@ void Viewpoint::State::choose_silhouettes() {
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
   const std::uint32_t own = soup.facets()[region.source_facet()].shell;
   for (const std::uint32_t item : found) {
-    const std::uint32_t shell = item < facets ? soup.facets()[item].shell : kNone;
+    const std::uint32_t shell = item < facets ? soup.first_corners(item).shell : kNone;
     if (shell != kNone && shell != own && in_silhouette[shell]++ == 0) by_silhouette.push_back(shell);
   }
   std::erase_if(by_silhouette, [&](std::uint32_t s) {
@@ -288,9 +288,14 @@ bool Viewpoint::State::add_flush_faces(std::uint32_t facet) {
 /// Adds items of the index; false when they hide all of the current source.
 bool Viewpoint::State::add_items(std::span<const std::uint32_t> items) {
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
+  left.clear();
   for (const std::uint32_t item : items) {
+    if (item >= facets || (!is_of_silhouette(item) && !region.misses(item))) left.push_back(item);
+  }
+  soup.prefetch(left);
+  for (const std::uint32_t item : left) {
     if (item < facets) {
-      if (!is_of_silhouette(item) && !add_candidate({item, kNone})) return false;
+      if (!add_candidate({item, kNone})) return false;
       continue;
     }
     const Shell& shell = soup.shells()[item - facets];
@@ -303,7 +308,7 @@ bool Viewpoint::State::add_items(std::span<const std::uint32_t> items) {
       continue;
     }
     for (const std::uint32_t f : shell.facets) {
-      if (!add_candidate({f, kNone})) return false;
+      if (!region.misses(f) && !add_candidate({f, kNone})) return false;
     }
   }
   return true;

@@ -87,6 +87,15 @@ class VisibleRegion {
     });
   }
 
+  /// Whether a facet surely hides nothing of the source: found at a glance, where it lies outside of the cone or below
+  /// the horizon, or is a back face of a shell that the point is outside of. Told in double precision only.
+  bool misses(std::uint32_t facet) const {
+    const FirstCorners& corners = soup_.first_corners(facet);
+    const Sieve::Glance glance = sieve_.glance(corners);
+    return glance == Sieve::Glance::outside || (glance == Sieve::Glance::back && corners.shell != kNone &&
+                                                view_.outside(soup_.shells()[corners.shell]));
+  }
+
   /// Adds an occluder. A shell must have the point outside its box and be all on the point's side of the source's plane
   /// (place_of), and one that is not convex must have a usable silhouette.
   Effect add(const OccluderId& occluder);
@@ -329,9 +338,6 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add(const OccluderId& 
 
 template <class Real>
 typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_t facet) {
-  if constexpr (std::is_same_v<Real, double>) {
-    if (sieve_.is_outside(soup_.first_corners(facet))) return Effect::none;
-  }
   const auto facets = soup_.facets();
   const Facet& f = facets[facet];
   const int facing = view_.facing(facet);

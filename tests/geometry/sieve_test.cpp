@@ -26,7 +26,8 @@ std::vector<typename VisibleRegion<Real>::Effect> effects(View& view, const Poly
   std::vector<typename VisibleRegion<Real>::Effect> effects;
   for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
     if (!region.set_source(source, facing, corners, horizon, nullptr)) break;
-    effects.push_back(region.add({f, kNone}));
+    const bool is_missed = std::is_same_v<Real, double> && region.misses(f);
+    effects.push_back(is_missed ? VisibleRegion<Real>::Effect::none : region.add({f, kNone}));
   }
   return effects;
 }
