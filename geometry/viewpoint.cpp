@@ -292,7 +292,9 @@ bool Viewpoint::State::add_items(std::span<const std::uint32_t> items) {
   for (const std::uint32_t item : items) {
     if (item >= facets || (!is_of_silhouette(item) && !region.misses(item))) left.push_back(item);
   }
-  soup.prefetch(left);
+  for (const std::uint32_t item : left) {
+    if (item < facets) view.prefetch(item);
+  }
   for (const std::uint32_t item : left) {
     if (item < facets) {
       if (!add_candidate({item, kNone})) return false;

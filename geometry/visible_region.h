@@ -358,6 +358,9 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
     of_source = sides_of_source({f.plane, facing}, loop);
     if (!of_source.behind) return Effect::none;
   }
+  for (const Corner& c : loop) {
+    if (c.neighbour != kNone) view_.prefetch(c.neighbour);  // for goes_on
+  }
   added.cone = &cones_.of_facet(facet);
   if (!ViewCones<Real>::reaches_above(*added.cone)) return Effect::none;
   bool pierces = false;
