@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/huge_pages.h"
 #include "geometry/vec3.h"
 
 namespace exitance {
@@ -100,7 +101,7 @@ class SpatialIndex {
     /// 2^-50 times 1 + |v / size|.
     double scaled(double v, int axis) const { return (v - centre[axis]) * per_size; }
 
-    std::vector<Node> nodes;
+    LargeArray<Node> nodes;
     Box bounds;
     Vec3 centre;
     double per_size = 1;  ///< a power of two, so that no box loses anything but by the shift

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/huge_pages.h"
 #include "geometry/polygon_soup.h"
 
 namespace exitance {
@@ -85,8 +86,8 @@ class View {
   std::span<const std::uint32_t> coplanar_;  // with the receiver's facet
   std::uint32_t epoch_ = 0;
   bool covered_ = false;
-  std::vector<SeenFacet> facets_;
-  std::vector<SeenVertex> vertices_;
+  LargeArray<SeenFacet> facets_;
+  LargeArray<SeenVertex> vertices_;
 };
 
 }  // namespace exitance

@@ -185,7 +185,7 @@ class ViewCones {
 
   View& view_;
   const PolygonSoup& soup_;
-  std::vector<Slot> slots_;  // by facet, then by shell
+  LargeArray<Slot> slots_;  // by facet, then by shell
   std::vector<std::unique_ptr<Cone<Real>>> cones_;
   std::uint32_t epoch_ = 0, used_ = 0;
   std::vector<const Vec3*> loop_;
