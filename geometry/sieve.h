@@ -1,6 +1,7 @@
 #pragma once
 // Tells at a glance, in double precision, of most facets near a source that they hide nothing of it.
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -75,6 +76,7 @@ class Sieve {
     held_back,  ///< surely hides nothing of the source: it lies behind the source's plane, or the source on the near
                 ///< side of its plane or outside of a side of its cone
     between,  ///< surely lies on the near side of the source's plane, and part of the source on the far side of its own
+    inside,   ///< surely does so, above the horizon and within the source's cone, of which it reaches no side
     unsure
   };
 
@@ -108,7 +110,11 @@ class Sieve {
                  turned(own);
     }
     if (source_is_nearer || any(outside) || all(behind)) return Verdict::held_back;
-    return source_reaches_beyond && all(over_plane > over_error) ? Verdict::between : Verdict::unsure;
+    if (!source_reaches_beyond || !all(over_plane > over_error)) return Verdict::unsure;
+    const bool inside = std::ranges::all_of(sides_, [&](const Side& side) {
+      return all(side.m.x * x + side.m.y * y + side.m.z * z > side.per_length * size);
+    });
+    return inside ? Verdict::inside : Verdict::between;
   }
 
  private:

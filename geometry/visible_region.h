@@ -21,6 +21,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "geometry/chart.h"
 #include "geometry/cone.h"
@@ -120,7 +121,8 @@ class VisibleRegion {
  private:
   /// An occluder's cone and, of each side's edge, the stretch within the source's cone.
   struct Added {
-    const Cone<Real>* cone = nullptr;
+    const Cone<Real>* cone = nullptr;  // of a facet that bounds nothing null until it is asked for
+    std::uint32_t facet = kNone;       // that one
     const Silhouette<Real>* silhouette = nullptr;  // of a shell that is not convex; `cone` is its edges
     std::uint32_t shell = kNone;
     Cone<Real> clipped;
@@ -144,7 +146,9 @@ class VisibleRegion {
   Effect add_cone(Added& added, const Drops& drops);
   Effect add_silhouette(Added& added);
   bool is_apart(const Cone<Real>& cone);
-  bool goes_on(const ConeSide<Real>& side, const Facet& occluder, int facing, bool covers);
+  bool goes_on(std::uint32_t n, std::pair<std::uint32_t, std::uint32_t> edge, const Facet& occluder, int facing,
+               bool covers);
+  bool goes_on_all_round(const Facet& occluder, int facing);
 
   Signed<Real> plane_value(const Plane& plane, const Vec3& v, int sign) const;
   ConeSide<Real> closing_cut(const Plane& T, int facing_occluder) const;
@@ -350,8 +354,17 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
   if (in_plane && !covers && f.polygon != facets[source_facet_].polygon) return Effect::none;
   const Sieve::Verdict verdict = covers ? Sieve::Verdict::unsure : judge(facet, facing);
   if (verdict == Sieve::Verdict::held_back) return Effect::none;
-  const bool asks_planes = !covers && verdict != Sieve::Verdict::between;
+  const bool asks_planes = !covers && verdict == Sieve::Verdict::unsure;
   Added& added = next_added();
+  if (verdict == Sieve::Verdict::inside && goes_on_all_round(f, facing)) {
+    added.cone = nullptr;
+    added.facet = facet;
+    added.bounds = false;
+    added.has_sides = false;
+    chart_.set(count_, chart_.box_of(frame_.x, loop));
+    ++count_;
+    return Effect::part;
+  }
 
   PlaneSides of_source;
   if (asks_planes) {
@@ -381,15 +394,28 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
     for (std::size_t k = 0; k < corners.size(); ++k) corners.exact(k).sign_at_a *= facing_source_;
     added.cone = &added.clipped;
   }
-  return add_cone(added, [&](const ConeSide<Real>& side) { return goes_on(side, f, facing, covers); });
+  return add_cone(added, [&](const ConeSide<Real>& side) {
+    return goes_on(side.across, {side.from, side.to}, f, facing, covers);
+  });
 }
 
-/// Whether an occluder goes on across an edge, in a neighbour that faces the same way and hides something of the
+/// Whether an occluder that does not lie in the source's plane goes on across all of its edges.
+template <class Real>
+bool VisibleRegion<Real>::goes_on_all_round(const Facet& occluder, int facing) {
+  const auto loop = soup_.corners(occluder);
+  for (std::uint32_t k = 0; k < loop.size(); ++k) {
+    const std::uint32_t next = k + 1 < loop.size() ? k + 1 : 0;
+    if (!goes_on(loop[k].neighbour, {k, next}, occluder, facing, false)) return false;
+  }
+  return true;
+}
+
+/// Whether an occluder goes on across an edge, given by its corners, in a neighbour n that faces the same way and hides something of the
 /// source, too: then the edge bounds nothing. Of an occluder that lies in the source's plane, and along an edge in that
 /// plane, the neighbour may dive behind it or lie in it.
 template <class Real>
-bool VisibleRegion<Real>::goes_on(const ConeSide<Real>& side, const Facet& occluder, int facing, bool covers) {
-  const std::uint32_t n = side.across;
+bool VisibleRegion<Real>::goes_on(std::uint32_t n, std::pair<std::uint32_t, std::uint32_t> edge, const Facet& occluder,
+                                  int facing, bool covers) {
   if (n == kNone || n == source_facet_ || view_.facing(n) != facing) return false;
   const Facet& neighbour = soup_.facets()[n];
   const bool of_convex_shell = neighbour.shell != kNone && soup_.shells()[neighbour.shell].convex;
@@ -399,7 +425,7 @@ bool VisibleRegion<Real>::goes_on(const ConeSide<Real>& side, const Facet& occlu
   const auto side_of_source = [&](const Corner& c) {
     return facing_source_ * side_of(*source_plane_, c.at, view_.counts());
   };
-  if (side_of_source(loop[side.from]) != 0 || side_of_source(loop[side.to]) != 0) return true;
+  if (side_of_source(loop[edge.first]) != 0 || side_of_source(loop[edge.second]) != 0) return true;
   const auto corners = soup_.corners(neighbour);
   return std::any_of(corners.begin(), corners.end(), [&](const Corner& k) { return side_of_source(k) > 0; });
 }
@@ -587,8 +613,11 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_silhouette(Added& 
 template <class Real>
 bool VisibleRegion<Real>::cover(const Added& a, Added& b, bool b_first) {
   if (b.silhouette) return cover_by_silhouette(a, b);
-  if (!b.has_sides) b.sides.set(b.cone->sides);
-  b.has_sides = true;
+  if (!b.has_sides) {
+    if (b.cone == nullptr) b.cone = &cones_.of_facet(b.facet);
+    b.sides.set(b.cone->sides);
+    b.has_sides = true;
+  }
   const Cone<Real>& cone = *a.cone;
   bool any_open = false;
   for (std::size_t k = 0; k < cone.sides.size(); ++k) {

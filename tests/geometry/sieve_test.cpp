@@ -73,7 +73,7 @@ TEST(Sieve, HoldsBackWhatHidesNothing) {
         idle += !hides;
         const auto verdict = sieve.judge(soup.facets()[f].plane, soup.first_corners(f), view.facing(f));
         held_back += !hides && verdict == Sieve::Verdict::held_back;
-        between += verdict == Sieve::Verdict::between;
+        between += verdict == Sieve::Verdict::between || verdict == Sieve::Verdict::inside;
       }
     }
   }
