@@ -487,8 +487,8 @@ class SideBlocks {
   std::span<const ConeSide<Real>> sides_;
 };
 
-/// Values of the functionals of a cone's sides at the ends of an edge, with exact signs: what rows hold, but of one edge
-/// only.
+/// Values of the functionals of a cone's sides at the ends of an edge, with exact signs: what rows hold, but of one
+/// edge only.
 template <class Real>
 class Columns {
  public:
@@ -543,7 +543,9 @@ class Columns {
         column.value[k] = sides.x[k] * w.x + sides.y[k] * w.y + sides.z[k] * w.z;
         column.error[k] = sides.error[k] * length + (sides.length[k] + sides.error[k]) * w_error;
         set_sign_byte(column.signs, k,
-                      column.value[k] > column.error[k] ? 1 : column.value[k] < -column.error[k] ? -1 : 0);
+                      column.value[k] > column.error[k]    ? 1
+                      : column.value[k] < -column.error[k] ? -1
+                                                           : 0);
       }
     }
   }

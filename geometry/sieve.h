@@ -67,8 +67,8 @@ class Sieve {
     }
     // w × w' · w'' of three corners, wrong by at most 8 u |w|₁|w'|₁|w''|₁, as in `judge`; positive where they are seen
     // to run clockwise.
-    const double clockwise = (y[0] * z[1] - z[0] * y[1]) * x[2] + (z[0] * x[1] - x[0] * z[1]) * y[2] +
-                             (x[0] * y[1] - y[0] * x[1]) * z[2];
+    const double clockwise =
+        (y[0] * z[1] - z[0] * y[1]) * x[2] + (z[0] * x[1] - x[0] * z[1]) * y[2] + (x[0] * y[1] - y[0] * x[1]) * z[2];
     return clockwise > 16 * kRoundoff * size[0] * size[1] * size[2] ? Glance::back : Glance::other;
   }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kBins = 16;
 constexpr float kEmptyPlace = 4;  // out of all that is searched
-constexpr int kDeepest = 20;      // below, halves: keeps the depth under 20 + 11 and what a search keeps waiting within its bounds
+constexpr int kDeepest = 20;      // below, halves: keeps the depth under 20 + 11, and what waits in a search in its ring
 
 /// Single-precision numbers not above, and not below, a number of size at most 2: one rounding of the conversion, and
 /// what the number's own error may be.

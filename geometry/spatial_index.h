@@ -41,8 +41,8 @@ struct Box {
   }
 };
 
-/// Of normal · (v − origin) for all v in a box, less than the least by more than the rounding of three sums of products;
-/// normal_error: of each of the normal's components.
+/// Of normal · (v − origin) for all v in a box, less than the least by more than the rounding of three sums of
+/// products; normal_error: of each of the normal's components.
 inline double least_height(const Box& box, const Vec3& normal, const Vec3& origin, double normal_error) {
   const Vec3 middle = 0.5 * box.lower + 0.5 * box.upper, half = box.upper - middle, w = middle - origin;
   const Vec3 size{std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)};

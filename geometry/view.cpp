@@ -55,7 +55,9 @@ void View::look_at(const Shell& shell) {
     const auto number = [&](std::size_t k) { return shell.facets[std::min(first + k, shell.facets.size() - 1)]; };
     const Plane* const plane[kLanes] = {&soup_.facets()[number(0)].plane, &soup_.facets()[number(1)].plane,
                                         &soup_.facets()[number(2)].plane, &soup_.facets()[number(3)].plane};
-    const auto four = [&](const auto& of) { return Doubles{of(*plane[0]), of(*plane[1]), of(*plane[2]), of(*plane[3])}; };
+    const auto four = [&](const auto& of) {
+      return Doubles{of(*plane[0]), of(*plane[1]), of(*plane[2]), of(*plane[3])};
+    };
     const Doubles w_x = x.x - four([](const Plane& p) { return p.origin.x; }),
                   w_y = x.y - four([](const Plane& p) { return p.origin.y; }),
                   w_z = x.z - four([](const Plane& p) { return p.origin.z; });

@@ -79,7 +79,7 @@ std::pair<Vec3, Vec3> line_of(const Vec3& p, const Vec3& n, const Vec3& q, const
 struct Viewpoint::State {
   static constexpr std::size_t kRecentBlockers = 4;
   /// A shell of which this part of the facets is found is taken by its silhouette.
-  static constexpr std::size_t kFacetsOfSilhouette = 8;
+  static constexpr std::size_t kFacetsOfSilhouette = 16;
 
   /// What stands between the point and a facet, kept while pieces of the same facet are asked about.
   struct Candidates {
@@ -196,9 +196,9 @@ bool Viewpoint::State::hidden_by_recent() {
   return false;
 }
 
-/// Adds half-spaces that hold the way to the source in its shadow along each axis, a wedge unless the point's own shadow
-/// lies within that of the source. No side of the cone need be near these planes, and only such as hold an axis keep a
-/// box away that a thin cone passes by at a slant.
+/// Adds half-spaces that hold the way to the source in its shadow along each axis, a wedge unless the point's own
+/// shadow lies within that of the source. No side of the cone need be near these planes, and only such as hold an axis
+/// keep a box away that a thin cone passes by at a slant.
 void Viewpoint::State::bound_across_axes(double reach) {
   const Vec3 x = view.receiver().point;
   for (const int axis : {0, 1, 2}) {

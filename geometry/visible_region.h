@@ -93,8 +93,8 @@ class VisibleRegion {
   bool misses(std::uint32_t facet) const {
     const FirstCorners& corners = soup_.first_corners(facet);
     const Sieve::Glance glance = sieve_.glance(corners);
-    return glance == Sieve::Glance::outside || (glance == Sieve::Glance::back && corners.shell != kNone &&
-                                                view_.outside(soup_.shells()[corners.shell]));
+    return glance == Sieve::Glance::outside ||
+           (glance == Sieve::Glance::back && corners.shell != kNone && view_.outside(soup_.shells()[corners.shell]));
   }
 
   /// Adds an occluder. A shell must have the point outside its box and be all on the point's side of the source's plane
@@ -121,12 +121,12 @@ class VisibleRegion {
  private:
   /// An occluder's cone and, of each side's edge, the stretch within the source's cone.
   struct Added {
-    const Cone<Real>* cone = nullptr;  // of a facet that bounds nothing null until it is asked for
-    std::uint32_t facet = kNone;       // that one
+    const Cone<Real>* cone = nullptr;              // null until it is asked for, of a facet that bounds nothing
+    std::uint32_t facet = kNone;                   // that one
     const Silhouette<Real>* silhouette = nullptr;  // of a shell that is not convex; `cone` is its edges
     std::uint32_t shell = kNone;
     Cone<Real> clipped;
-    SideBlocks<Real> sides;            // of the cone, if there is no silhouette, once they are asked for
+    SideBlocks<Real> sides;  // of the cone, if there is no silhouette, once they are asked for
     bool has_sides = false;
     std::vector<Stretch<Real>> edges;  // empty: bounds nothing
     bool bounds = false;               // whether any edge does
@@ -299,12 +299,11 @@ template <class Real>
 void VisibleRegion<Real>::narrow_to_crossing(Stretch<Real>& stretch, const Signed<Real>& from, const Signed<Real>& to,
                                              const Cone<Real>& cone, const ConeSide<Real>& edge,
                                              const ConeSide<Real>& side) {
-  narrow(stretch, from, to, evaluation().weight(edge.sweep),
-         [&](Signed<Real>& a, Signed<Real>& b, double accuracy) {
-           if constexpr (!std::is_floating_point_v<Real>) return;
-           a = refined_value_at(side, cone.corners.exact(edge.from), frame_, view_.counts(), accuracy);
-           b = refined_value_at(side, cone.corners.exact(edge.to), frame_, view_.counts(), accuracy);
-         });
+  narrow(stretch, from, to, evaluation().weight(edge.sweep), [&](Signed<Real>& a, Signed<Real>& b, double accuracy) {
+    if constexpr (!std::is_floating_point_v<Real>) return;
+    a = refined_value_at(side, cone.corners.exact(edge.from), frame_, view_.counts(), accuracy);
+    b = refined_value_at(side, cone.corners.exact(edge.to), frame_, view_.counts(), accuracy);
+  });
 }
 
 template <class Real>
@@ -410,9 +409,9 @@ bool VisibleRegion<Real>::goes_on_all_round(const Facet& occluder, int facing) {
   return true;
 }
 
-/// Whether an occluder goes on across an edge, given by its corners, in a neighbour n that faces the same way and hides something of the
-/// source, too: then the edge bounds nothing. Of an occluder that lies in the source's plane, and along an edge in that
-/// plane, the neighbour may dive behind it or lie in it.
+/// Whether an occluder goes on across an edge, given by its corners, in a neighbour n that faces the same way and hides
+/// something of the source, too: then the edge bounds nothing. Of an occluder that lies in the source's plane, and
+/// along an edge in that plane, the neighbour may dive behind it or lie in it.
 template <class Real>
 bool VisibleRegion<Real>::goes_on(std::uint32_t n, std::pair<std::uint32_t, std::uint32_t> edge, const Facet& occluder,
                                   int facing, bool covers) {
