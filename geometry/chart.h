@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "geometry/cone.h"
+#include "geometry/polygon_soup.h"
 
 namespace exitance {
 
@@ -43,6 +45,16 @@ class Chart {
     const Corners<Real>& c = cone.corners;
     for (std::size_t k = 0; k < c.size(); ++k) {
       if (c.is_kept(k)) extend(box, rounded(c.w(k)), static_cast<double>(c.length(k)));
+    }
+    return box;
+  }
+
+  /// Of points as they are seen from x.
+  ChartBox box_of(const Vec3& x, std::span<const Corner> corners) const {
+    ChartBox box;
+    for (const Corner& c : corners) {
+      const Vec<double> w{c.at.x - x.x, c.at.y - x.y, c.at.z - x.z};
+      extend(box, w, norm(w));
     }
     return box;
   }

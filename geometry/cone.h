@@ -456,6 +456,114 @@ class Row {
   bool any_positive_ = false, any_negative_ = false, all_positive_ = false, all_negative_ = false;
 };
 
+/// Sides of a cone side by side; of places without a side all is 0.
+template <class Real>
+class SideBlocks {
+ public:
+  struct alignas(64) Block {
+    std::array<Real, kLanes> x{}, y{}, z{}, length{}, error{};
+  };
+
+  void set(std::span<const ConeSide<Real>> sides) {
+    sides_ = sides;
+    blocks_.resize((sides.size() + kLanes - 1) / kLanes);
+    if (!blocks_.empty()) blocks_.back() = {};
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      Block& b = blocks_[k / kLanes];
+      const std::size_t lane = k % kLanes;
+      b.x[lane] = sides[k].m.x;
+      b.y[lane] = sides[k].m.y;
+      b.z[lane] = sides[k].m.z;
+      b.length[lane] = sides[k].length;
+      b.error[lane] = sides[k].error;
+    }
+  }
+
+  std::span<const Block> blocks() const { return blocks_; }
+  std::span<const ConeSide<Real>> sides() const { return sides_; }
+
+ private:
+  std::vector<Block> blocks_;
+  std::span<const ConeSide<Real>> sides_;
+};
+
+/// Values of the functionals of a cone's sides at the ends of an edge, with exact signs: what rows hold, but of one
+/// edge only.
+template <class Real>
+class Columns {
+ public:
+  /// False when all of the edge surely lies outside of one side; else calls f(side, value at from, value at to) for
+  /// those sides that neither end lies inside of, or only one, until it says false, and gives what it said last.
+  template <class F>
+  bool each(const SideBlocks<Real>& sides, const Corners<Real>& corners, const ConeSide<Real>& edge,
+            const ViewFrame& frame, StageCounts& counts, const F& f) {
+    const auto blocks = sides.blocks();
+    if (ends_.size() < blocks.size()) ends_.resize(blocks.size());
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      filter(blocks[b], corners, edge.from, ends_[b].from);
+      filter(blocks[b], corners, edge.to, ends_[b].to);
+      if ((negative_bytes(ends_[b].from.signs) & negative_bytes(ends_[b].to.signs)) != 0) return false;
+    }
+    for (std::size_t k = 0; k < sides.sides().size(); ++k) {
+      const ConeSide<Real>& side = sides.sides()[k];
+      const Ends& ends = ends_[k / kLanes];
+      const Signed<Real> from = at(ends.from, k % kLanes, side, corners.exact(edge.from), frame, counts),
+                         to = at(ends.to, k % kLanes, side, corners.exact(edge.to), frame, counts);
+      if (from.sign + to.sign <= 0 && !f(side, from, to)) return false;
+    }
+    return true;
+  }
+
+ private:
+  /// Of one corner, for a block of sides.
+  struct Column {
+    std::array<Real, kLanes> value, error;
+    SignBytes signs = 0;
+  };
+  struct alignas(64) Ends {
+    Column from, to;
+  };
+
+  /// As Row's.
+  static void filter(const typename SideBlocks<Real>::Block& sides, const Corners<Real>& corners, std::size_t corner,
+                     Column& column) {
+    const Vec<Real> w = corners.w(corner);
+    const Real& length = corners.length(corner);
+    const Real& w_error = corners.error(corner);
+    if constexpr (std::is_same_v<Real, double>) {
+      const Doubles value = load(sides.x.data()) * w.x + load(sides.y.data()) * w.y + load(sides.z.data()) * w.z;
+      const Doubles side_error = load(sides.error.data());
+      const Doubles error = side_error * length + (load(sides.length.data()) + side_error) * w_error;
+      store(value, column.value.data());
+      store(error, column.error.data());
+      column.signs = certain_signs(value, error);
+    } else {
+      column.signs = 0;
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        column.value[k] = sides.x[k] * w.x + sides.y[k] * w.y + sides.z[k] * w.z;
+        column.error[k] = sides.error[k] * length + (sides.length[k] + sides.error[k]) * w_error;
+        set_sign_byte(column.signs, k,
+                      column.value[k] > column.error[k]    ? 1
+                      : column.value[k] < -column.error[k] ? -1
+                                                           : 0);
+      }
+    }
+  }
+
+  static Signed<Real> at(const Column& column, std::size_t lane, const ConeSide<Real>& side, const ViewPoint& corner,
+                         const ViewFrame& frame, StageCounts& counts) {
+    const int sign = sign_byte(column.signs, lane);
+    if (sign != 0) {
+      ++counts.filter;
+      return {column.value[lane], column.error[lane], sign};
+    }
+    constexpr double accuracy = std::is_same_v<Real, double> ? 0.5 : 0x1p-50;
+    return is_end_of(corner, side) ? Signed<Real>{} : refined_value_at(side, corner, frame, counts, accuracy);
+  }
+
+  std::vector<Ends> ends_;
+};
+
 /// Narrows the stretch to where the linear function from a (at 0) to b (at 1) is positive. Both zero is the caller's
 /// case. refine(a, b, accuracy): called when the error of the crossing times `weight` exceeds 1, with ever better
 /// accuracies, to make a and b known to that or better.

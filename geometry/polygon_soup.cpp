@@ -272,7 +272,7 @@ void PolygonSoup::find_shells(std::uint32_t first) {
     std::sort(shell.facets.begin(), shell.facets.end());
     shell.convex = true;
     for (const auto f : shell.facets) {
-      store.facets[f].shell = static_cast<std::uint32_t>(store.shells.size());
+      store.facets[f].shell = store.first_corners[f].shell = static_cast<std::uint32_t>(store.shells.size());
       const auto loop = corners(facets_[f]);
       for (std::size_t k = 0; k < loop.size(); ++k) {
         const Corner& c = loop[k];
@@ -372,10 +372,16 @@ void PolygonSoup::build_index() {
 }
 
 void PolygonSoup::prefetch(std::span<const std::uint32_t> items) const {
+  prefetch_corners(items);
+  for (const std::uint32_t item : items) {
+    if (item < facets_.size()) __builtin_prefetch(&facets_[item]);
+  }
+}
+
+void PolygonSoup::prefetch_corners(std::span<const std::uint32_t> items) const {
   constexpr std::size_t kLine = 64;
   for (const std::uint32_t item : items) {
     if (item >= facets_.size()) continue;
-    __builtin_prefetch(&facets_[item]);
     const char* corners = reinterpret_cast<const char*>(&first_corners_[item]);
     for (std::size_t k = 0; k < sizeof(FirstCorners); k += kLine) __builtin_prefetch(corners + k);
   }

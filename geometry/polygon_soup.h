@@ -64,7 +64,8 @@ struct Corner {
 struct alignas(32) FirstCorners {
   std::array<double, 4> x, y, z;
   std::array<std::uint32_t, 4> vertex;
-  bool all = false;  ///< there are no others
+  std::uint32_t shell = kNone;  ///< as the facet's
+  bool all = false;             ///< there are no others
 };
 
 /// An edge of a shell: from – to runs counter-clockwise around facet `left`, clockwise around `right`.
@@ -159,6 +160,8 @@ class PolygonSoup {
   /// Asks for the memory of items of the index before it is needed: a search in a large scene meets items that nothing
   /// has looked at for long, and then spends most of its time waiting for one after the other.
   void prefetch(std::span<const std::uint32_t> items) const;
+  /// The same of nothing but first_corners.
+  void prefetch_corners(std::span<const std::uint32_t> items) const;
 
   /// Largest absolute coordinate.
   double extent() const { return extent_; }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "geometry/huge_pages.h"
 #include "geometry/polygon_soup.h"
 
 namespace exitance {
@@ -14,11 +15,11 @@ namespace exitance {
 /// Each soup has all before an end of its own. A place is written by the soup that first has it and not again as long as
 /// one that has it is there; arrays never move once they are shared.
 struct PolygonSoup::Store : std::enable_shared_from_this<PolygonSoup::Store> {
-  std::vector<Vec3> vertices;
-  std::vector<Facet> facets;  ///< with spare ones at the end
+  LargeArray<Vec3> vertices;
+  LargeArray<Facet> facets;   ///< with spare ones at the end
   std::uint32_t used = 0;     ///< of them
-  std::vector<Corner> corners;
-  std::vector<FirstCorners> first_corners;
+  LargeArray<Corner> corners;
+  LargeArray<FirstCorners> first_corners;
   std::vector<Shell> shells;
   std::vector<Role> roles;
   std::vector<Rank> ranks;

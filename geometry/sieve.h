@@ -1,6 +1,7 @@
 #pragma once
 // Tells at a glance, in double precision, of most facets near a source that they hide nothing of it.
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -50,21 +51,32 @@ class Sieve {
     near_error_ = near_per_length_ * size_of(to_x);
   }
 
-  /// Whether a facet surely lies outside of a side of the source's cone, or below the horizon.
-  bool is_outside(const FirstCorners& facet) const {
-    if (!facet.all) return false;
-    const Seen seen = see(facet);
+  enum class Glance : std::uint8_t {
+    outside,  ///< surely lies outside of a side of the source's cone, or below the horizon
+    back,     ///< surely is seen from its back
+    other
+  };
+
+  Glance glance(const FirstCorners& facet) const {
+    if (!facet.all) return Glance::other;
+    const auto [x, y, z, size, vertex] = see(facet);
+    const Seen seen{x, y, z, size, vertex};
     for (const Side& side : sides_) {
-      const Doubles value = side.m.x * seen.x + side.m.y * seen.y + side.m.z * seen.z;
-      if (all((value < -(side.per_length * seen.size)) | seen.is(side.from) | seen.is(side.to))) return true;
+      const Doubles value = side.m.x * x + side.m.y * y + side.m.z * z;
+      if (all((value < -(side.per_length * size)) | seen.is(side.from) | seen.is(side.to))) return Glance::outside;
     }
-    return false;
+    // w × w' · w'' of three corners, wrong by at most 8 u |w|₁|w'|₁|w''|₁, as in `judge`; positive where they are seen
+    // to run clockwise.
+    const double clockwise =
+        (y[0] * z[1] - z[0] * y[1]) * x[2] + (z[0] * x[1] - x[0] * z[1]) * y[2] + (x[0] * y[1] - y[0] * x[1]) * z[2];
+    return clockwise > 16 * kRoundoff * size[0] * size[1] * size[2] ? Glance::back : Glance::other;
   }
 
   enum class Verdict : std::uint8_t {
     held_back,  ///< surely hides nothing of the source: it lies behind the source's plane, or the source on the near
                 ///< side of its plane or outside of a side of its cone
     between,  ///< surely lies on the near side of the source's plane, and part of the source on the far side of its own
+    inside,   ///< surely does so, above the horizon and within the source's cone, of which it reaches no side
     unsure
   };
 
@@ -98,7 +110,11 @@ class Sieve {
                  turned(own);
     }
     if (source_is_nearer || any(outside) || all(behind)) return Verdict::held_back;
-    return source_reaches_beyond && all(over_plane > over_error) ? Verdict::between : Verdict::unsure;
+    if (!source_reaches_beyond || !all(over_plane > over_error)) return Verdict::unsure;
+    const bool inside = std::ranges::all_of(sides_, [&](const Side& side) {
+      return all(side.m.x * x + side.m.y * y + side.m.z * z > side.per_length * size);
+    });
+    return inside ? Verdict::inside : Verdict::between;
   }
 
  private:

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kBins = 16;
 constexpr float kEmptyPlace = 4;  // out of all that is searched
-constexpr int kDeepest = 20;      // below, halves: keeps the depth under 20 + 11 and the search stack within its bounds
+constexpr int kDeepest = 20;      // below, halves: keeps the depth under 20 + 11, and what waits in a search in its ring
 
 /// Single-precision numbers not above, and not below, a number of size at most 2: one rounding of the conversion, and
 /// what the number's own error may be.
@@ -176,11 +176,15 @@ void SpatialIndex::Tree::find(std::span<const HalfSpace> region, const Box& box,
     box_upper[a] = rounded_up(std::clamp(scaled(box.upper[axis], axis), -2.0, 2.0));
   }
 
-  std::array<std::int32_t, 256> stack;
-  std::size_t top = 0;
-  stack[top++] = 0;
-  while (top > 0) {
-    const Node& node = nodes[static_cast<std::size_t>(stack[--top])];
+  // First come, first served, so that a node has time to come out of memory before it is needed; the last first where
+  // there are many, which adds at most 7 a level.
+  constexpr std::size_t kRing = 512, kMany = 256;
+  std::array<std::int32_t, kRing> waiting;
+  std::size_t first = 0, last = 0;
+  waiting[last++] = 0;
+  while (first < last) {
+    const std::size_t at = last - first < kMany ? first++ : --last;
+    const Node& node = nodes[static_cast<std::size_t>(waiting[at % kRing])];
     Ints meets = (floats(node.bounds[0][0]) <= box_upper[0]) & (floats(node.bounds[1][0]) >= box_lower[0]) &
                  (floats(node.bounds[0][1]) <= box_upper[1]) & (floats(node.bounds[1][1]) >= box_lower[1]) &
                  (floats(node.bounds[0][2]) <= box_upper[2]) & (floats(node.bounds[1][2]) >= box_lower[2]);
@@ -202,7 +206,7 @@ void SpatialIndex::Tree::find(std::span<const HalfSpace> region, const Box& box,
         for (std::size_t line = 0; line < sizeof(Node); line += 64) {
           __builtin_prefetch(reinterpret_cast<const char*>(next) + line);
         }
-        stack[top++] = child;
+        waiting[last++ % kRing] = child;
       }
     }
   }

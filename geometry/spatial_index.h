@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/huge_pages.h"
 #include "geometry/vec3.h"
 
 namespace exitance {
@@ -39,6 +40,17 @@ struct Box {
            lower.z <= b.upper.z && b.lower.z <= upper.z;
   }
 };
+
+/// Of normal · (v − origin) for all v in a box, less than the least by more than the rounding of three sums of
+/// products; normal_error: of each of the normal's components.
+inline double least_height(const Box& box, const Vec3& normal, const Vec3& origin, double normal_error) {
+  const Vec3 middle = 0.5 * box.lower + 0.5 * box.upper, half = box.upper - middle, w = middle - origin;
+  const Vec3 size{std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)};
+  const double reach = std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z) + half.x + half.y + half.z;
+  const double margin = (2 * normal_error + 0x1p-48 * (size.x + size.y + size.z)) *
+                        (reach + std::fabs(middle.x) + std::fabs(middle.y) + std::fabs(middle.z));
+  return dot(normal, w) - dot(size, half) - margin;
+}
 
 /// The half-space normal · v ≥ offset. Whoever makes it lowers the offset by its own rounding errors.
 struct HalfSpace {
@@ -89,7 +101,7 @@ class SpatialIndex {
     /// 2^-50 times 1 + |v / size|.
     double scaled(double v, int axis) const { return (v - centre[axis]) * per_size; }
 
-    std::vector<Node> nodes;
+    LargeArray<Node> nodes;
     Box bounds;
     Vec3 centre;
     double per_size = 1;  ///< a power of two, so that no box loses anything but by the shift

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/lanes.h"
+
 namespace exitance {
 
 View::View(const PolygonSoup& soup) : soup_(soup), facets_(soup.facets().size()), vertices_(soup.vertices().size()) {}
@@ -15,29 +17,65 @@ void View::look_from(const Receiver& receiver) {
     epoch_ = 1;
   }
   covered_ = false;
+  coplanar_ = {};
   if (receiver.facet == kNone) return;
-  for (const std::uint32_t t : soup_.coplanar(receiver.facet)) {
+  coplanar_ = soup_.coplanar(receiver.facet);
+  for (const std::uint32_t t : coplanar_) {
     covered_ = covered_ || (soup_.covers(t, receiver.facet) && holds_receiver(t));
   }
 }
 
 bool View::excluded(std::uint32_t facet) const {
-  if (receiver_.facet == kNone) return false;
   if (facet == receiver_.facet) return true;  // facets of one polygon that is bent see each other
-  const auto coplanar = soup_.coplanar(receiver_.facet);
-  return std::binary_search(coplanar.begin(), coplanar.end(), facet);
+  return std::ranges::binary_search(coplanar_, facet);
 }
 
 const View::SeenFacet& View::seen(std::uint32_t facet) {
   SeenFacet& seen = facets_[facet];
   if (seen.epoch != epoch_) {
-    seen.epoch = epoch_;
     const Facet& f = soup_.facets()[facet];
-    seen.side = static_cast<std::int8_t>(side_of(f.plane, receiver_.point, counts_));
-    const bool back_of_shell = seen.side < 0 && f.shell != kNone && outside(soup_.shells()[f.shell]);
-    seen.facing = back_of_shell || excluded(facet) ? std::int8_t{0} : seen.side;
+    const int side = side_of(f.plane, receiver_.point, counts_);
+    set(seen, facet, side, side < 0 && f.shell != kNone && outside(soup_.shells()[f.shell]));
   }
   return seen;
+}
+
+void View::set(SeenFacet& seen, std::uint32_t facet, int side, bool outside_shell) {
+  seen.epoch = epoch_;
+  seen.side = static_cast<std::int8_t>(side);
+  seen.facing = (side < 0 && outside_shell) || excluded(facet) ? std::int8_t{0} : seen.side;
+}
+
+/// As side_of, four at a time, the last facet once more where there are fewer.
+void View::look_at(const Shell& shell) {
+  const bool is_outside = outside(shell);
+  const Vec3 x = receiver_.point;
+  const auto magnitude = [](const Doubles& v) { return v < 0 ? -v : v; };
+  for (std::size_t first = 0; first < shell.facets.size(); first += kLanes) {
+    const auto number = [&](std::size_t k) { return shell.facets[std::min(first + k, shell.facets.size() - 1)]; };
+    const Plane* const plane[kLanes] = {&soup_.facets()[number(0)].plane, &soup_.facets()[number(1)].plane,
+                                        &soup_.facets()[number(2)].plane, &soup_.facets()[number(3)].plane};
+    const auto four = [&](const auto& of) {
+      return Doubles{of(*plane[0]), of(*plane[1]), of(*plane[2]), of(*plane[3])};
+    };
+    const Doubles w_x = x.x - four([](const Plane& p) { return p.origin.x; }),
+                  w_y = x.y - four([](const Plane& p) { return p.origin.y; }),
+                  w_z = x.z - four([](const Plane& p) { return p.origin.z; });
+    const Doubles value = four([](const Plane& p) { return p.normal.x; }) * w_x +
+                          four([](const Plane& p) { return p.normal.y; }) * w_y +
+                          four([](const Plane& p) { return p.normal.z; }) * w_z;
+    const Doubles bound = (1.01 * four([](const Plane& p) { return p.normal_error; }) +
+                           5 * kRoundoff * four([](const Plane& p) { return p.normal_size; })) *
+                              (magnitude(w_x) + magnitude(w_y) + magnitude(w_z)) +
+                          0x1p-1000;
+    const SignBytes signs = certain_signs(value, bound);
+    for (std::size_t k = 0; k < std::min(kLanes, shell.facets.size() - first); ++k) {
+      SeenFacet& seen = facets_[number(k)];
+      const int certain = sign_byte(signs, k);
+      if (certain != 0) ++counts_.filter;
+      set(seen, number(k), certain != 0 ? certain : side_of(*plane[k], x, counts_), is_outside);
+    }
+  }
 }
 
 int View::horizon(std::uint32_t vertex) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/huge_pages.h"
 #include "geometry/polygon_soup.h"
 
 namespace exitance {
@@ -41,8 +42,22 @@ class View {
   /// The side of a facet's plane on which the point lies as it is rounded, whether the facet hides something or not.
   int side(std::uint32_t facet) { return seen(facet).side; }
 
+  /// Asks for the memory that the side of a facet is found from before it is needed (PolygonSoup::prefetch).
+  void prefetch(std::uint32_t facet) const {
+    const Facet& f = soup_.facets()[facet];
+    __builtin_prefetch(&facets_[facet]);
+    __builtin_prefetch(&f);
+    __builtin_prefetch(&f.plane.normal_error);
+  }
+
+  /// Looks at all facets of a shell at once: soon done for those that lie clear of the point.
+  void look_at(const Shell& shell);
+
   /// Side of a vertex against the receiver's horizon: +1 above.
   int horizon(std::uint32_t vertex);
+
+  /// Whether a box surely lies above the horizon.
+  bool surely_above(const Box& box) const { return least_height(box, receiver_.normal, receiver_.point, 0) > 0; }
 
   /// Whether the point is outside of the shell's box, grown because a point that lies in a contact by identity may be
   /// rounded out of it.
@@ -62,15 +77,17 @@ class View {
   };
 
   const SeenFacet& seen(std::uint32_t facet);
+  void set(SeenFacet& seen, std::uint32_t facet, int side, bool outside_shell);
   bool holds_receiver(std::uint32_t facet);
 
   const PolygonSoup& soup_;
   Receiver receiver_;
   StageCounts counts_;
+  std::span<const std::uint32_t> coplanar_;  // with the receiver's facet
   std::uint32_t epoch_ = 0;
   bool covered_ = false;
-  std::vector<SeenFacet> facets_;
-  std::vector<SeenVertex> vertices_;
+  LargeArray<SeenFacet> facets_;
+  LargeArray<SeenVertex> vertices_;
 };
 
 }  // namespace exitance

@@ -110,6 +110,7 @@ class ViewCones {
   /// Edges between faces that are seen from the front and others, which lie to their right.
   void find_ring(std::uint32_t shell) {
     ring_.clear();
+    view_.look_at(soup_.shells()[shell]);
     for (const ShellEdge& edge : soup_.shells()[shell].edges) {
       const bool left = view_.side(edge.left) > 0, right = view_.side(edge.right) > 0;
       if (left != right) ring_.push_back(left ? std::pair(edge.from, edge.to) : std::pair(edge.to, edge.from));
@@ -127,8 +128,9 @@ class ViewCones {
       next_.push_back(static_cast<std::uint32_t>(next - ring_.begin()));
     }
     set_cone<Real>(silhouette.cone, view_.receiver().point, loop_, -1, nullptr, next_);
-    const auto& vertices = soup_.shells()[shell].vertices;
-    silhouette.is_usable = std::ranges::all_of(vertices, [&](std::uint32_t v) { return view_.horizon(v) > 0; });
+    const Shell& s = soup_.shells()[shell];
+    silhouette.is_usable = view_.surely_above(s.box) ||
+                           std::ranges::all_of(s.vertices, [&](std::uint32_t v) { return view_.horizon(v) > 0; });
     if (!silhouette.is_usable) return;
     const ViewFrame frame{view_.receiver().point, view_.receiver().normal, {}};
     silhouette.is_usable = !has_edges_that_coincide<Real>(silhouette, {frame, view_.counts(), kFinestPerAngle});
@@ -183,7 +185,7 @@ class ViewCones {
 
   View& view_;
   const PolygonSoup& soup_;
-  std::vector<Slot> slots_;  // by facet, then by shell
+  LargeArray<Slot> slots_;  // by facet, then by shell
   std::vector<std::unique_ptr<Cone<Real>>> cones_;
   std::uint32_t epoch_ = 0, used_ = 0;
   std::vector<const Vec3*> loop_;

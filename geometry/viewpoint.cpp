@@ -79,7 +79,7 @@ std::pair<Vec3, Vec3> line_of(const Vec3& p, const Vec3& n, const Vec3& q, const
 struct Viewpoint::State {
   static constexpr std::size_t kRecentBlockers = 4;
   /// A shell of which this part of the facets is found is taken by its silhouette.
-  static constexpr std::size_t kFacetsOfSilhouette = 8;
+  static constexpr std::size_t kFacetsOfSilhouette = 16;
 
   /// What stands between the point and a facet, kept while pieces of the same facet are asked about.
   struct Candidates {
@@ -101,6 +101,7 @@ struct Viewpoint::State {
   bool add_candidate(const OccluderId& occluder);
   bool hidden_by_recent();
   bool find_candidates(std::uint32_t facet);
+  void bound_across_axes(double reach);
   bool add_flush_faces(std::uint32_t facet);
   bool add_items(std::span<const std::uint32_t> items);
   void choose_silhouettes();
@@ -109,7 +110,7 @@ struct Viewpoint::State {
     by_silhouette.clear();
   }
   bool is_of_silhouette(std::uint32_t facet) const {
-    const std::uint32_t shell = soup.facets()[facet].shell;
+    const std::uint32_t shell = soup.first_corners(facet).shell;
     return shell != kNone && in_silhouette[shell] != 0;
   }
   bool prepare(const Source& source, int& source_facing);
@@ -145,7 +146,7 @@ struct Viewpoint::State {
   std::vector<double> heights;
   std::optional<Drop> dropped;  // if its corners lie in its plane up to rounding only
   std::vector<HalfSpace> half_spaces;
-  std::vector<std::uint32_t> found;
+  std::vector<std::uint32_t> found, left;    // items, and those that do not miss the source at a glance
   std::vector<std::uint32_t> by_silhouette;  // shells
   std::vector<std::uint32_t> in_silhouette;  // by shell: not 0 for those
 };
@@ -195,6 +196,29 @@ bool Viewpoint::State::hidden_by_recent() {
   return false;
 }
 
+/// Adds half-spaces that hold the way to the source in its shadow along each axis, a wedge unless the point's own
+/// shadow lies within that of the source. No side of the cone need be near these planes, and only such as hold an axis
+/// keep a box away that a thin cone passes by at a slant.
+void Viewpoint::State::bound_across_axes(double reach) {
+  const Vec3 x = view.receiver().point;
+  for (const int axis : {0, 1, 2}) {
+    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    for (const double turn : {1.0, -1.0}) {
+      Vec3 normal;
+      const auto height = [&](const Vec3* v) { return normal[b] * ((*v)[b] - x[b]) + normal[c] * ((*v)[c] - x[c]); };
+      for (const Vec3* v : corners) {
+        if (height(v) >= 0 && normal != Vec3{}) continue;
+        normal = Vec3{};
+        normal[b] = -turn * ((*v)[c] - x[c]);
+        normal[c] = turn * ((*v)[b] - x[b]);
+      }
+      if (!std::ranges::all_of(corners, [&](const Vec3* v) { return height(v) >= 0; })) continue;
+      const double size = std::fabs(normal[b]) + std::fabs(normal[c]);
+      half_spaces.push_back({normal, dot(normal, x) - 16 * kRoundoff * size * reach});
+    }
+  }
+}
+
 /// Looks for everything that hides something of the current source from the point; false when all of it is hidden.
 bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   if (hidden_by_recent()) {
@@ -212,6 +236,7 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
     const Vec3 m{side.m.x, side.m.y, side.m.z};
     half_spaces.push_back({m, dot(m, view.receiver().point) - (side.error + 16 * kRoundoff * side.length) * reach});
   }
+  bound_across_axes(reach);
   const Plane& plane = soup.facets()[facet].plane;
   const Vec3 normal = side_of(plane, view.receiver().point, view.counts()) * plane.normal;
   half_spaces.push_back({view.receiver().normal, dot(view.receiver().normal, view.receiver().point) -
@@ -224,7 +249,7 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   if (!add_flush_faces(facet)) return false;
   found.clear();
   soup.index().find(half_spaces, box, found);
-  soup.prefetch(found);
+  soup.prefetch_corners(found);
   choose_silhouettes();
   return std::ranges::all_of(by_silhouette, [&](std::uint32_t s) { return add_candidate({kNone, s}); }) &&
          add_items(found);
@@ -237,7 +262,7 @@ void Viewpoint::State::choose_silhouettes() {
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
   const std::uint32_t own = soup.facets()[region.source_facet()].shell;
   for (const std::uint32_t item : found) {
-    const std::uint32_t shell = item < facets ? soup.facets()[item].shell : kNone;
+    const std::uint32_t shell = item < facets ? soup.first_corners(item).shell : kNone;
     if (shell != kNone && shell != own && in_silhouette[shell]++ == 0) by_silhouette.push_back(shell);
   }
   std::erase_if(by_silhouette, [&](std::uint32_t s) {
@@ -263,9 +288,16 @@ bool Viewpoint::State::add_flush_faces(std::uint32_t facet) {
 /// Adds items of the index; false when they hide all of the current source.
 bool Viewpoint::State::add_items(std::span<const std::uint32_t> items) {
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
+  left.clear();
   for (const std::uint32_t item : items) {
+    if (item >= facets || (!is_of_silhouette(item) && !region.misses(item))) left.push_back(item);
+  }
+  for (const std::uint32_t item : left) {
+    if (item < facets) view.prefetch(item);
+  }
+  for (const std::uint32_t item : left) {
     if (item < facets) {
-      if (!is_of_silhouette(item) && !add_candidate({item, kNone})) return false;
+      if (!add_candidate({item, kNone})) return false;
       continue;
     }
     const Shell& shell = soup.shells()[item - facets];
@@ -278,7 +310,7 @@ bool Viewpoint::State::add_items(std::span<const std::uint32_t> items) {
       continue;
     }
     for (const std::uint32_t f : shell.facets) {
-      if (!add_candidate({f, kNone})) return false;
+      if (!region.misses(f) && !add_candidate({f, kNone})) return false;
     }
   }
   return true;

@@ -21,6 +21,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "geometry/chart.h"
 #include "geometry/cone.h"
@@ -87,6 +88,15 @@ class VisibleRegion {
     });
   }
 
+  /// Whether a facet surely hides nothing of the source: found at a glance, where it lies outside of the cone or below
+  /// the horizon, or is a back face of a shell that the point is outside of. Told in double precision only.
+  bool misses(std::uint32_t facet) const {
+    const FirstCorners& corners = soup_.first_corners(facet);
+    const Sieve::Glance glance = sieve_.glance(corners);
+    return glance == Sieve::Glance::outside ||
+           (glance == Sieve::Glance::back && corners.shell != kNone && view_.outside(soup_.shells()[corners.shell]));
+  }
+
   /// Adds an occluder. A shell must have the point outside its box and be all on the point's side of the source's plane
   /// (place_of), and one that is not convex must have a usable silhouette.
   Effect add(const OccluderId& occluder);
@@ -111,10 +121,13 @@ class VisibleRegion {
  private:
   /// An occluder's cone and, of each side's edge, the stretch within the source's cone.
   struct Added {
-    const Cone<Real>* cone = nullptr;
+    const Cone<Real>* cone = nullptr;              // null until it is asked for, of a facet that bounds nothing
+    std::uint32_t facet = kNone;                   // that one
     const Silhouette<Real>* silhouette = nullptr;  // of a shell that is not convex; `cone` is its edges
     std::uint32_t shell = kNone;
     Cone<Real> clipped;
+    SideBlocks<Real> sides;  // of the cone, if there is no silhouette, once they are asked for
+    bool has_sides = false;
     std::vector<Stretch<Real>> edges;  // empty: bounds nothing
     bool bounds = false;               // whether any edge does
   };
@@ -133,11 +146,13 @@ class VisibleRegion {
   Effect add_cone(Added& added, const Drops& drops);
   Effect add_silhouette(Added& added);
   bool is_apart(const Cone<Real>& cone);
-  bool goes_on(const ConeSide<Real>& side, const Facet& occluder, int facing, bool covers);
+  bool goes_on(std::uint32_t n, std::pair<std::uint32_t, std::uint32_t> edge, const Facet& occluder, int facing,
+               bool covers);
+  bool goes_on_all_round(const Facet& occluder, int facing);
 
   Signed<Real> plane_value(const Plane& plane, const Vec3& v, int sign) const;
   ConeSide<Real> closing_cut(const Plane& T, int facing_occluder) const;
-  bool cover(const Added& a, const Added& b, bool b_first);
+  bool cover(const Added& a, Added& b, bool b_first);
   bool cover_by_silhouette(const Added& a, const Added& b);
   Evaluation evaluation() { return {frame_, view_.counts(), per_bearable_angle_}; }
 
@@ -163,10 +178,10 @@ class VisibleRegion {
                     const ConeSide<Real>& side) {
     const int from = row.sign(edge.from), to = row.sign(edge.to);
     if (from <= 0 && to <= 0) stretch.empty = true;
-    if (from * to < 0) narrow_to_crossing(stretch, row, cone, edge, side);
+    if (from * to < 0) narrow_to_crossing(stretch, row.at(edge.from), row.at(edge.to), cone, edge, side);
   }
-  void narrow_to_crossing(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone,
-                          const ConeSide<Real>& edge, const ConeSide<Real>& side);
+  void narrow_to_crossing(Stretch<Real>& stretch, const Signed<Real>& from, const Signed<Real>& to,
+                          const Cone<Real>& cone, const ConeSide<Real>& edge, const ConeSide<Real>& side);
 
   template <class Sink>
   void finish_edge(const Cone<Real>& cone, const ConeSide<Real>& side, const Stretch<Real>& edge,
@@ -178,6 +193,7 @@ class VisibleRegion {
   ViewFrame frame_;
   std::uint32_t source_facet_ = kNone;
   const Plane* source_plane_ = nullptr;
+  std::span<const std::uint32_t> coplanar_;  // with the source
   int facing_source_ = 1;
   double per_bearable_angle_ = kFinestPerAngle;
   std::optional<std::span<const std::uint32_t>> added_only_;
@@ -187,6 +203,7 @@ class VisibleRegion {
   std::vector<std::vector<Stretch<Real>>> covered_source_;  // by source side
   std::vector<std::vector<Stretch<Real>>> covered_;         // by side of the occluder being finished
   Row<Real> row_;
+  Columns<Real> columns_;
   LayersOverEdge<Real> layers_;
   std::vector<std::size_t> covered_before_;  // sizes of covered_source_ before a solid was met with the source
   std::vector<Row<Real>> source_rows_;       // of each of the source's sides, at the occluder that is being added
@@ -203,6 +220,7 @@ bool VisibleRegion<Real>::set_source(std::uint32_t facet, int facing, PointLoop 
                                      const Drop* drop) {
   source_facet_ = facet;
   source_plane_ = &soup_.facets()[facet].plane;
+  coplanar_ = soup_.coplanar(facet);
   drop_ = drop;
   frame_ = drop ? drop->frame : ViewFrame{view_.receiver().point, view_.receiver().normal, source_plane_->points};
   facing_source_ = facing;
@@ -276,32 +294,26 @@ ConeSide<Real> VisibleRegion<Real>::closing_cut(const Plane& T, int facing_occlu
   return side;
 }
 
-/// Narrows a stretch of an edge of a cone to where it is inside of the side whose values at the cone are in the row.
+/// Narrows a stretch of an edge of a cone to where it is inside of a side, whose values at the edge's ends are given.
 template <class Real>
-void VisibleRegion<Real>::narrow_to_crossing(Stretch<Real>& stretch, const Row<Real>& row, const Cone<Real>& cone,
-                                             const ConeSide<Real>& edge, const ConeSide<Real>& side) {
-  narrow(stretch, row.at(edge.from), row.at(edge.to), evaluation().weight(edge.sweep),
-         [&](Signed<Real>& a, Signed<Real>& b, double accuracy) {
-           if constexpr (!std::is_floating_point_v<Real>) return;
-           a = refined_value_at(side, cone.corners.exact(edge.from), frame_, view_.counts(), accuracy);
-           b = refined_value_at(side, cone.corners.exact(edge.to), frame_, view_.counts(), accuracy);
-         });
+void VisibleRegion<Real>::narrow_to_crossing(Stretch<Real>& stretch, const Signed<Real>& from, const Signed<Real>& to,
+                                             const Cone<Real>& cone, const ConeSide<Real>& edge,
+                                             const ConeSide<Real>& side) {
+  narrow(stretch, from, to, evaluation().weight(edge.sweep), [&](Signed<Real>& a, Signed<Real>& b, double accuracy) {
+    if constexpr (!std::is_floating_point_v<Real>) return;
+    a = refined_value_at(side, cone.corners.exact(edge.from), frame_, view_.counts(), accuracy);
+    b = refined_value_at(side, cone.corners.exact(edge.to), frame_, view_.counts(), accuracy);
+  });
 }
 
 template <class Real>
 typename VisibleRegion<Real>::Place VisibleRegion<Real>::place_of(const Shell& shell) {
-  // Of most shells the whole box lies in front and above, clear of the roundings of a sum of products.
-  const Vec3 n = view_.receiver().normal, m = facing_source_ * source_plane_->normal, x = view_.receiver().point;
-  const Vec3 middle = 0.5 * shell.box.lower + 0.5 * shell.box.upper, half = shell.box.upper - middle;
-  const auto least = [&](const Vec3& normal, const Vec3& origin, double normal_error) {
-    const Vec3 size{std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)};
-    const Vec3 w = middle - origin;
-    const double reach = std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z) + half.x + half.y + half.z;
-    const double margin = (2 * normal_error + 0x1p-48 * (size.x + size.y + size.z)) *
-                          (reach + std::fabs(middle.x) + std::fabs(middle.y) + std::fabs(middle.z));
-    return dot(normal, w) - dot(size, half) - margin;
-  };
-  if (least(m, source_plane_->origin, source_plane_->normal_error) > 0 && least(n, x, 0) > 0) return Place::in_front;
+  // Of most shells the whole box lies in front and above.
+  const Vec3 m = facing_source_ * source_plane_->normal;
+  if (least_height(shell.box, m, source_plane_->origin, source_plane_->normal_error) > 0 &&
+      view_.surely_above(shell.box)) {
+    return Place::in_front;
+  }
   bool in_front = false, behind = false, above = false;
   for (const std::uint32_t v : shell.vertices) {
     above = above || view_.horizon(v) > 0;
@@ -329,29 +341,37 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add(const OccluderId& 
 
 template <class Real>
 typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_t facet) {
-  if constexpr (std::is_same_v<Real, double>) {
-    if (sieve_.is_outside(soup_.first_corners(facet))) return Effect::none;
-  }
   const auto facets = soup_.facets();
   const Facet& f = facets[facet];
   const int facing = view_.facing(facet);
   if (facing == 0 || facet == source_facet_) return Effect::none;
   const auto loop = soup_.corners(f);
-  const auto coplanar = soup_.coplanar(source_facet_);
-  const bool in_plane = std::binary_search(coplanar.begin(), coplanar.end(), facet);
+  const bool in_plane = std::ranges::binary_search(coplanar_, facet);
   const bool covers =
       in_plane && (facing_source_ > 0 ? soup_.covers(facet, source_facet_) : soup_.covers_back(facet, source_facet_));
   // Facets of one polygon that lie in one plane only up to rounding may hide each other by as little.
   if (in_plane && !covers && f.polygon != facets[source_facet_].polygon) return Effect::none;
   const Sieve::Verdict verdict = covers ? Sieve::Verdict::unsure : judge(facet, facing);
   if (verdict == Sieve::Verdict::held_back) return Effect::none;
-  const bool asks_planes = !covers && verdict != Sieve::Verdict::between;
+  const bool asks_planes = !covers && verdict == Sieve::Verdict::unsure;
   Added& added = next_added();
+  if (verdict == Sieve::Verdict::inside && goes_on_all_round(f, facing)) {
+    added.cone = nullptr;
+    added.facet = facet;
+    added.bounds = false;
+    added.has_sides = false;
+    chart_.set(count_, chart_.box_of(frame_.x, loop));
+    ++count_;
+    return Effect::part;
+  }
 
   PlaneSides of_source;
   if (asks_planes) {
     of_source = sides_of_source({f.plane, facing}, loop);
     if (!of_source.behind) return Effect::none;
+  }
+  for (const Corner& c : loop) {
+    if (c.neighbour != kNone) view_.prefetch(c.neighbour);  // for goes_on
   }
   added.cone = &cones_.of_facet(facet);
   if (!ViewCones<Real>::reaches_above(*added.cone)) return Effect::none;
@@ -373,28 +393,38 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
     for (std::size_t k = 0; k < corners.size(); ++k) corners.exact(k).sign_at_a *= facing_source_;
     added.cone = &added.clipped;
   }
-  return add_cone(added, [&](const ConeSide<Real>& side) { return goes_on(side, f, facing, covers); });
+  return add_cone(added, [&](const ConeSide<Real>& side) {
+    return goes_on(side.across, {side.from, side.to}, f, facing, covers);
+  });
 }
 
-/// Whether an occluder goes on across an edge, in a neighbour that faces the same way and hides something of the
-/// source, too: then the edge bounds nothing. Of an occluder that lies in the source's plane, and along an edge in that
-/// plane, the neighbour may dive behind it or lie in it.
+/// Whether an occluder that does not lie in the source's plane goes on across all of its edges.
 template <class Real>
-bool VisibleRegion<Real>::goes_on(const ConeSide<Real>& side, const Facet& occluder, int facing, bool covers) {
-  const std::uint32_t n = side.across;
+bool VisibleRegion<Real>::goes_on_all_round(const Facet& occluder, int facing) {
+  const auto loop = soup_.corners(occluder);
+  for (std::uint32_t k = 0; k < loop.size(); ++k) {
+    const std::uint32_t next = k + 1 < loop.size() ? k + 1 : 0;
+    if (!goes_on(loop[k].neighbour, {k, next}, occluder, facing, false)) return false;
+  }
+  return true;
+}
+
+/// Whether an occluder goes on across an edge, given by its corners, in a neighbour n that faces the same way and hides
+/// something of the source, too: then the edge bounds nothing. Of an occluder that lies in the source's plane, and
+/// along an edge in that plane, the neighbour may dive behind it or lie in it.
+template <class Real>
+bool VisibleRegion<Real>::goes_on(std::uint32_t n, std::pair<std::uint32_t, std::uint32_t> edge, const Facet& occluder,
+                                  int facing, bool covers) {
   if (n == kNone || n == source_facet_ || view_.facing(n) != facing) return false;
   const Facet& neighbour = soup_.facets()[n];
   const bool of_convex_shell = neighbour.shell != kNone && soup_.shells()[neighbour.shell].convex;
   if (added_only_ && !of_convex_shell && !std::ranges::binary_search(*added_only_, n)) return false;
-  if (covers) {
-    const auto coplanar = soup_.coplanar(source_facet_);
-    return neighbour.polygon == occluder.polygon && std::binary_search(coplanar.begin(), coplanar.end(), n);
-  }
+  if (covers) return neighbour.polygon == occluder.polygon && std::ranges::binary_search(coplanar_, n);
   const auto loop = soup_.corners(occluder);
   const auto side_of_source = [&](const Corner& c) {
     return facing_source_ * side_of(*source_plane_, c.at, view_.counts());
   };
-  if (side_of_source(loop[side.from]) != 0 || side_of_source(loop[side.to]) != 0) return true;
+  if (side_of_source(loop[edge.first]) != 0 || side_of_source(loop[edge.second]) != 0) return true;
   const auto corners = soup_.corners(neighbour);
   return std::any_of(corners.begin(), corners.end(), [&](const Corner& k) { return side_of_source(k) > 0; });
 }
@@ -486,11 +516,20 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_cone(Added& added,
   const Cone<Real>& cone = *added.cone;
   if (is_apart(cone)) return Effect::none;
 
-  // Apart, by a side of the occluder? And of each of the source's edges, which stretch does it cover?
+  // Of the source's edges those are out of the cone's reach in whose plane it has no corner, nor beyond it.
   within_.clear();
-  for (const auto& side : source_.sides) within_.push_back(side.stretch);
-  bool whole = true;
-  for (const auto& side : cone.sides) {
+  bool inside = true;
+  for (std::size_t k = 0; k < source_.sides.size(); ++k) {
+    within_.push_back(source_.sides[k].stretch);
+    if (source_rows_[k].all_positive()) {
+      within_.back().empty = true;
+    } else {
+      inside = false;
+    }
+  }
+  // Apart, by a side of the occluder? And of each of the source's edges, which stretch does it cover?
+  bool whole = !inside;
+  for (const auto& side : std::span(cone.sides).first(inside ? 0 : cone.sides.size())) {
     fill(row_, side, source_);
     if (!row_.any_positive()) return Effect::none;
     if (row_.all_positive()) continue;
@@ -519,6 +558,7 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_cone(Added& added,
     added.bounds = added.bounds || !stretch.empty;
     added.edges.push_back(stretch);
   }
+  added.has_sides = false;
   chart_.set(count_, chart_.box_of(cone));
   ++count_;
   return Effect::part;
@@ -570,40 +610,35 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_silhouette(Added& 
 /// Adds to covered_ the stretches of a's edges, those of `open_`, that b covers on their outer sides, or stands for.
 /// False when no edge of a is left that is not surely covered from end to end.
 template <class Real>
-bool VisibleRegion<Real>::cover(const Added& a, const Added& b, bool b_first) {
+bool VisibleRegion<Real>::cover(const Added& a, Added& b, bool b_first) {
   if (b.silhouette) return cover_by_silhouette(a, b);
-  const Cone<Real>& cone = *a.cone;
-  const std::size_t n = cone.sides.size();
-  within_ = open_;
-  for (Stretch<Real>& stretch : within_) stretch.narrow = false;
-  std::size_t left = n;
-  for (const auto& side : b.cone->sides) {
-    fill(row_, side, cone);
-    if (row_.all_positive()) continue;
-    if (row_.all_negative()) return true;
-    left = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      if (within_[k].empty) continue;
-      if (lies_in(row_, cone.sides[k])) {
-        if (a.silhouette) {
-          within_[k].empty = gradient_sign(frame_, side.exact) < 0;
-          left += !within_[k].empty;
-          continue;
-        }
-        // On one line. On opposite sides of it b covers a's outer side; on the same side, the first stands for both.
-        if (row_.any_positive() && !b_first) within_[k].empty = true;
-      } else {
-        narrow_along(within_[k], row_, cone, cone.sides[k], side);
-      }
-      left += !within_[k].empty;
-    }
-    if (left == 0) return true;
+  if (!b.has_sides) {
+    if (b.cone == nullptr) b.cone = &cones_.of_facet(b.facet);
+    b.sides.set(b.cone->sides);
+    b.has_sides = true;
   }
+  const Cone<Real>& cone = *a.cone;
   bool any_open = false;
-  for (std::size_t k = 0; k < n; ++k) {
-    if (!within_[k].empty) {
-      covered_[k].push_back(within_[k]);
-      open_[k].empty = !within_[k].narrow;
+  for (std::size_t k = 0; k < cone.sides.size(); ++k) {
+    if (open_[k].empty) continue;
+    const ConeSide<Real>& edge = cone.sides[k];
+    Stretch<Real> within = open_[k];
+    within.narrow = false;
+    const auto narrow_to = [&](const ConeSide<Real>& side, const Signed<Real>& from, const Signed<Real>& to) {
+      if (from.sign * to.sign < 0) {
+        narrow_to_crossing(within, from, to, cone, edge, side);
+        return true;
+      }
+      if (from.sign != 0 || to.sign != 0) return false;
+      // On one line. On opposite sides of it b covers a's outer side; on the same side, the first stands for both.
+      if (a.silhouette) return gradient_sign(frame_, side.exact) >= 0;
+      if (b_first) return true;
+      fill(row_, side, cone);
+      return !row_.any_positive();
+    };
+    if (columns_.each(b.sides, cone.corners, edge, frame_, view_.counts(), narrow_to)) {
+      covered_[k].push_back(within);
+      open_[k].empty = !within.narrow;
     }
     any_open = any_open || !open_[k].empty;
   }

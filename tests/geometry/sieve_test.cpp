@@ -26,7 +26,8 @@ std::vector<typename VisibleRegion<Real>::Effect> effects(View& view, const Poly
   std::vector<typename VisibleRegion<Real>::Effect> effects;
   for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
     if (!region.set_source(source, facing, corners, horizon, nullptr)) break;
-    effects.push_back(region.add({f, kNone}));
+    const bool is_missed = std::is_same_v<Real, double> && region.misses(f);
+    effects.push_back(is_missed ? VisibleRegion<Real>::Effect::none : region.add({f, kNone}));
   }
   return effects;
 }
@@ -72,7 +73,7 @@ TEST(Sieve, HoldsBackWhatHidesNothing) {
         idle += !hides;
         const auto verdict = sieve.judge(soup.facets()[f].plane, soup.first_corners(f), view.facing(f));
         held_back += !hides && verdict == Sieve::Verdict::held_back;
-        between += verdict == Sieve::Verdict::between;
+        between += verdict == Sieve::Verdict::between || verdict == Sieve::Verdict::inside;
       }
     }
   }
