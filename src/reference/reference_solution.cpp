@@ -30,10 +30,8 @@ namespace {
 constexpr std::uint32_t kElementsPerEdge = 4;
 /// Of the error's square, what the patches have that are divided at a time.
 constexpr double kShareDivided = 0.7;
-/// What is taken for a patch's own error: of what dividing has changed in it, this share (where B is smooth a fifteenth
-/// is left of it; along edges, where B is not, nearly half); of what polynomials leave over of the means this multiple,
-/// as more is left over between them; and of what gathering misses this one, as what is gathered is of a B that is off.
-constexpr double kShareOfChange = 0.5, kLeftOver = 2, kMissed = 1.5;
+/// What gathering misses counts by so much: it is gathered from a B that is itself off.
+constexpr double kMissed = 1.5;
 /// Of the error wanted, what the solver may leave and what the polynomials' corrections may still change.
 constexpr double kSolverShare = 1e-4;
 constexpr int kMostCorrections = 50;
@@ -160,8 +158,8 @@ class ReferenceSolver {
                              .progress = [&](double fraction, std::string_view) { report(fraction); }},
                             checkpoints_.empty() ? nullptr : &checkpoints_.back());
     if (!run.complete) {
-      return ended(ReferenceEnd::stopped,
-                   fmt::format("stopped after {} of {} rows of the first level{}", run.finished, new_elements_, kept()));
+      return ended(ReferenceEnd::stopped, fmt::format("stopped after {} of {} rows of the first level{}", run.finished,
+                                                      new_elements_, kept()));
     }
     level_ = {};
     level_.patches = static_cast<std::uint32_t>(mesh.patches.size());
@@ -292,25 +290,18 @@ class ReferenceSolver {
   void measure_mesh_error(std::span<const double> Y, std::span<const double> Y_lower) {
     const PatchMesh& mesh = refined_.mesh();
     const std::uint32_t degree = result_.record.degree;
-    PatchPolynomials polynomials(mesh, degree);
-    std::vector<double> coefficients = polynomials.fit(Y, 1);
-    measure_changes(Y, polynomials, coefficients);
     share_ = squared_distances(mesh, Y, degree, Y_lower, degree - 1);
+    for (std::size_t p = 0; p < share_.size(); ++p) share_[p] += kMissed * kMissed * missed_[p];
     double reference = 0;
     std::vector<double> apart;
     for (std::uint32_t e = 0; e < Y.size(); ++e) {
-      const double left = Y[e] - polynomials.mean(e, coefficients, 1, 0), area = mesh.elements[e].area;
-      share_[mesh.elements[e].patch] += kLeftOver * kLeftOver * area * left * left;
-      reference += area * Y[e] * Y[e];
+      reference += mesh.elements[e].area * Y[e] * Y[e];
       apart.push_back(Y[e] - Y_lower[e]);
     }
-    for (std::size_t p = 0; p < share_.size(); ++p)
-      share_[p] += kShareOfChange * kShareOfChange * change_[p] + kMissed * kMissed * missed_[p];
     const double all = std::accumulate(share_.begin(), share_.end(), 0.0);
     result_.record.error.mesh = all > 0 ? std::sqrt(all / reference) : 0;
     level_.means_error = relative_norm(apart, Y);
     mesh_before_ = mesh;
-    coefficients_before_ = std::move(coefficients);
   }
 
   /// Over each new patch; the others keep theirs, as little of it is changed by what they receive. False where stopped.
@@ -327,41 +318,6 @@ class ReferenceSolver {
     for (std::size_t k = 0; k < patches.size(); ++k) missed[patches[k]] = (*squares)[k];
     missed_ = std::move(missed);
     return true;
-  }
-
-  /// Over each new patch, ∫ (u − u of the patch it is a part of)²; on the first level, where there is none, ∫ (u − its
-  /// fit of first degree)².
-  void measure_changes(std::span<const double> Y, const PatchPolynomials& polynomials,
-                       std::span<const double> coefficients) {
-    const PatchMesh& mesh = refined_.mesh();
-    const std::size_t terms = polynomials.terms();
-    if (origins_.empty()) {
-      change_ = squared_distances(mesh, Y, polynomials.degree(), Y, 1);
-      return;
-    }
-    const PatchPolynomials before(mesh_before_, polynomials.degree());
-    std::vector<double> change(mesh.patches.size()), term(terms), term_before(terms);
-    std::vector<WeightedPoint> points;
-    for (std::uint32_t p = 0; p < change.size(); ++p) {
-      const Origin& origin = origins_[p];
-      if (origin.kept) {
-        change[p] = change_[origin.patch];
-        continue;
-      }
-      for (const AreaCell& cell : cells_of(mesh.loop(mesh.pieces_of(mesh.patches[p]).front()))) {
-        gauss_points(cell, 4, points);
-        for (const WeightedPoint& x : points) {
-          polynomials.terms_at(p, x.point, term);
-          before.terms_at(origin.patch, x.point, term_before);
-          double apart = 0;
-          for (std::size_t t = 0; t < terms; ++t)
-            apart +=
-                term[t] * coefficients[p * terms + t] - term_before[t] * coefficients_before_[origin.patch * terms + t];
-          change[p] += x.weight * apart * apart;
-        }
-      }
-    }
-    change_ = std::move(change);
   }
 
   void refine() {
@@ -432,11 +388,9 @@ class ReferenceSolver {
   std::vector<double> start_;     // B to begin the next level with, by element and band; empty on the first
   std::vector<double> shooting_;  // of the solution, by element and band
   std::vector<double> share_;     // of the mesh's squared error, by patch
-  std::vector<double> change_;    // by patch: what dividing the patch it comes from has changed in it, squared
   std::vector<double> missed_;    // by patch: what gathering at points misses, squared
   PatchMesh mesh_before_;         // that of the solution there is
-  std::vector<double> coefficients_before_;  // of its luminance
-  std::vector<Origin> origins_;              // of the patches, in that mesh; empty on the first level
+  std::vector<Origin> origins_;   // of the patches, in that mesh; empty on the first level
   double solver_error_ = 0;
   ReferenceSolution result_;
 };

@@ -100,8 +100,7 @@ class Residual {
     samples.mesh.pieces = mesh.pieces;
     for (const Element& e : mesh.elements)
       samples.mesh.patches.push_back({.piece_first = e.piece_first, .piece_count = e.piece_count});
-    for_elements(patches,
-                 [&](std::uint32_t e) { samples.add(mesh.elements[e], e, scattered_point(cell_of(e), e)); });
+    for_elements(patches, [&](std::uint32_t e) { samples.add(mesh.elements[e], e, scattered_point(cell_of(e), e)); });
     std::vector<double> means(straight_H_.size()), shot(straight_H_.size());
     for (std::size_t i = 0; i < means.size(); ++i) {
       means[i] = solution_.B[i] - system.E[i] - system.rho[i] * straight_H_[i];

@@ -17,10 +17,10 @@ namespace exitance {
 /// A solution on the elements of a mesh, each one convex piece on a plane patch. Values by element and band.
 struct MeshSolution {
   const PatchMesh& mesh;
-  const RadiositySystem& system;   ///< one unknown an element, form factors between elements
-  std::uint32_t degree = 0;        ///< of the polynomials that B is on patches (patch_polynomials.h)
-  std::span<const double> B;       ///< means over elements
-  std::span<const double> shot;    ///< what elements shoot (PatchPolynomials::shooting_values)
+  const RadiositySystem& system;  ///< one unknown an element, form factors between elements
+  std::uint32_t degree = 0;       ///< of the polynomials that B is on patches (patch_polynomials.h)
+  std::span<const double> B;      ///< means over elements
+  std::span<const double> shot;   ///< what elements shoot (PatchPolynomials::shooting_values)
 };
 
 /// B as polynomials have it, against E + ρ H at points, H from exact visibility of the elements and what they shoot.
@@ -33,8 +33,8 @@ class SampledResidual {
 
   /// Estimates of ∫ (Y gathered − Y)² dA over each of the named patches, Y luminance. Light that comes straight from
   /// emitters, whose shadows are the sharpest, is gathered at 64 points of each element and the rest at one, as that
-  /// asks for the form factors to all elements; the norms of both are added. Where the mean of the 64 points misses that
-  /// of the element, light varies in spots that they do not see: these are taken to be of 1/256 of it.
+  /// asks for the form factors to all elements; the norms of both are added. Where the mean of the 64 points misses
+  /// that of the element, light varies in spots that they do not see: these are taken to be of 1/256 of it.
   ///
   /// In parallel; the same bits for any number of threads. Nothing where `stop`, which may be empty, says so: it is
   /// asked between blocks of points.
