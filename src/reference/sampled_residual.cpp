@@ -18,7 +18,7 @@ constexpr int kOrder = 8;
 /// Share of an element that spots are taken to be of which the points see nothing but that their mean is wrong.
 constexpr double kSpot = 1.0 / 256;
 /// Points between two questions whether to stop.
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kBlock = 256;
 
 /// Point k of a sequence that fills the square evenly (Roberts 2018, R2: steps by powers of the plastic number's
 /// inverse), on a cell, with the area that it stands for where a cell has one point.

@@ -74,8 +74,7 @@ TEST(ReferenceSolutionTest, TheErrorHoldsInAPenumbra) {
 
 /// An element of the first mesh is 0.25 wide: it sees little of a shadow in its mean, or of one between its points.
 TEST(ReferenceSolutionTest, TheErrorHoldsWhereShadowsAreSmallAgainstTheFirstMesh) {
-  for (const SmallSheet& sheet :
-       {SmallSheet{0.62, 0.31, 0.06, 0.01}, {0.62, 0.31, 0.02, 0.003}}) {
+  for (const SmallSheet& sheet : {SmallSheet{0.62, 0.31, 0.06, 0.01}, {0.62, 0.31, 0.02, 0.003}}) {
     SCOPED_TRACE(testing::Message() << "sheet of " << sheet.edge << " at " << sheet.x);
     const Truth truth = [&](std::uint32_t surface, const Vec3& p) {
       return surface == 0 ? small_shadow_B(sheet, p.x, p.y) : surface == 1 ? 1 : 0;
