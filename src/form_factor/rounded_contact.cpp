@@ -34,7 +34,7 @@ RoundedContact::RoundedContact(const PolygonSoup& soup, const Source& receiver, 
   std::vector<std::uint32_t> shells;
   for (const std::uint32_t item : items) {
     const std::uint32_t shell = item < facets ? soup.facets()[item].shell : item - facets;
-    if (shell != kNone) shells.push_back(shell);
+    if (shell != kNone && shell != soup.facets()[receiver.facet].shell) shells.push_back(shell);
   }
   std::ranges::sort(shells);
   shells.erase(std::unique(shells.begin(), shells.end()), shells.end());

@@ -16,7 +16,8 @@ namespace exitance {
 /// exact are none of these; Viewpoint knows them.
 class RoundedContact {
  public:
-  /// Of closed solids among the items, of the soup's index. A face is in contact if it looks at the polygon and all its
+  /// Of closed solids among the items, of the soup's index, but for the one that the receiver bounds: its points are on
+  /// that one's surface, neither within nor without. A face is in contact if it looks at the polygon and all its
   /// corners lie within 2^-47 of the scene's size of the polygon's plane.
   RoundedContact(const PolygonSoup& soup, const Source& receiver, const Source& source,
                  std::span<const std::uint32_t> items);

@@ -18,6 +18,7 @@
 #include "src/reference/pair_run.h"
 #include "src/reference/patch_polynomials.h"
 #include "src/reference/refined_mesh.h"
+#include "src/reference/sampled_residual.h"
 #include "src/scene/input_error.h"
 #include "src/scene/scene_hash.h"
 #include "src/solve/error_bound.h"
@@ -29,10 +30,8 @@ namespace {
 constexpr std::uint32_t kElementsPerEdge = 4;
 /// Of the error's square, what the patches have that are divided at a time.
 constexpr double kShareDivided = 0.7;
-/// What is taken for a patch's own error: of what dividing has changed in it, this share (where B is smooth a fifteenth
-/// is left of it; along edges, where B is not, nearly half); and of what polynomials leave over of the means this
-/// multiple, as more is left over between them.
-constexpr double kShareOfChange = 0.5, kLeftOver = 2;
+/// What gathering misses counts by so much: it is gathered from a B that is itself off.
+constexpr double kMissed = 1.5;
 /// Of the error wanted, what the solver may leave and what the polynomials' corrections may still change.
 constexpr double kSolverShare = 1e-4;
 constexpr int kMostCorrections = 50;
@@ -109,7 +108,8 @@ class ReferenceSolver {
                  {.patch_size = options.patch_size,
                   .elements_per_edge = kElementsPerEdge,
                   .memory_limit = options.memory_limit}),
-        soup_(soup) {
+        soup_(soup),
+        residual_(soup) {
     if (refined_.mesh().patches.empty())
       throw InputError(scene.name, 0, "no surface has an area; there is nothing to solve");
     pairs_.stop = options_.stop;
@@ -128,7 +128,7 @@ class ReferenceSolver {
     if (!checkpoint.empty()) std::filesystem::remove(mark_of_end(checkpoint), ignored);
     for (;;) {
       if (!add_form_factors()) return std::move(result_);
-      solve_level();
+      if (!solve_level()) return std::move(result_);
       const bool reached = result_.record.error.total <= options_.error;
       if (reached && !checkpoint.empty()) std::ofstream(mark_of_end(checkpoint)).flush();
       if (saved) saved(result_);
@@ -158,9 +158,8 @@ class ReferenceSolver {
                              .progress = [&](double fraction, std::string_view) { report(fraction); }},
                             checkpoints_.empty() ? nullptr : &checkpoints_.back());
     if (!run.complete) {
-      return ended(ReferenceEnd::stopped,
-                   fmt::format("stopped after {} of {} rows of the first level{}", run.finished, new_elements_,
-                               checkpoints_.empty() ? "" : "; they are kept, and the same command goes on"));
+      return ended(ReferenceEnd::stopped, fmt::format("stopped after {} of {} rows of the first level{}", run.finished,
+                                                      new_elements_, kept()));
     }
     level_ = {};
     level_.patches = static_cast<std::uint32_t>(mesh.patches.size());
@@ -185,6 +184,8 @@ class ReferenceSolver {
         static_cast<double>(options_.memory_limit) * 0x1p-30));
   }
 
+  std::string kept() const { return checkpoints_.empty() ? "" : "; they are kept, and the same command goes on"; }
+
   void report(double fraction) const {
     if (!options_.progress) return;
     options_.progress(fraction,
@@ -197,17 +198,22 @@ class ReferenceSolver {
                        result_.levels.size());
   }
 
-  void solve_level() {
+  /// False where it was stopped, as add_form_factors().
+  bool solve_level() {
     const auto start = Clock::now();
     const PatchMesh& mesh = refined_.mesh();
     RadiositySystem system = system_of(scene_, mesh);
     system.F = matrix_of(std::span(&rows_, 1), static_cast<std::uint32_t>(mesh.elements.size()));
     level_.largest_excess = explain_row_sums(system.F);
 
+    const std::uint32_t degree = PatchPolynomials::degree_of_grid(kElementsPerEdge);
+    std::vector<double> B = solved(system, degree, start_), lower = solved(system, degree - 1, B);
+    if (!measure_missed({mesh, system, degree, B, shooting_}))
+      return ended(ReferenceEnd::stopped, "stopped while the first level's error was estimated" + kept());
+
     SolutionRecord& record = result_.record;
     record.mesh = mesh;
-    record.degree = PatchPolynomials::degree_of_grid(kElementsPerEdge);
-    std::vector<double> B = solved(system, record.degree, start_), lower = solved(system, record.degree - 1, B);
+    record.degree = degree;
     record.H = irradiance(system.F, shooting_, system.bands);
     const double of_solver = solver_error_, of_form_factors = integration_error(system, B);
     record.B = std::move(B);
@@ -222,6 +228,7 @@ class ReferenceSolver {
     level_.seconds_solve = seconds_since(start);
     result_.levels.push_back(level_);
     result_.end = ReferenceEnd::reached;
+    return true;
   }
 
   /// Means of B over elements that shoot as polynomials of that degree do. Their corrections are put into E, so that
@@ -283,59 +290,34 @@ class ReferenceSolver {
   void measure_mesh_error(std::span<const double> Y, std::span<const double> Y_lower) {
     const PatchMesh& mesh = refined_.mesh();
     const std::uint32_t degree = result_.record.degree;
-    PatchPolynomials polynomials(mesh, degree);
-    std::vector<double> coefficients = polynomials.fit(Y, 1);
-    measure_changes(Y, polynomials, coefficients);
     share_ = squared_distances(mesh, Y, degree, Y_lower, degree - 1);
+    for (std::size_t p = 0; p < share_.size(); ++p) share_[p] += kMissed * kMissed * missed_[p];
     double reference = 0;
     std::vector<double> apart;
     for (std::uint32_t e = 0; e < Y.size(); ++e) {
-      const double left = Y[e] - polynomials.mean(e, coefficients, 1, 0), area = mesh.elements[e].area;
-      share_[mesh.elements[e].patch] += kLeftOver * kLeftOver * area * left * left;
-      reference += area * Y[e] * Y[e];
+      reference += mesh.elements[e].area * Y[e] * Y[e];
       apart.push_back(Y[e] - Y_lower[e]);
     }
-    for (std::size_t p = 0; p < share_.size(); ++p) share_[p] += kShareOfChange * kShareOfChange * change_[p];
     const double all = std::accumulate(share_.begin(), share_.end(), 0.0);
     result_.record.error.mesh = all > 0 ? std::sqrt(all / reference) : 0;
     level_.means_error = relative_norm(apart, Y);
     mesh_before_ = mesh;
-    coefficients_before_ = std::move(coefficients);
   }
 
-  /// Over each new patch, ∫ (u − u of the patch it is a part of)²; on the first level, where there is none, ∫ (u − its
-  /// fit of first degree)².
-  void measure_changes(std::span<const double> Y, const PatchPolynomials& polynomials,
-                       std::span<const double> coefficients) {
-    const PatchMesh& mesh = refined_.mesh();
-    const std::size_t terms = polynomials.terms();
-    if (origins_.empty()) {
-      change_ = squared_distances(mesh, Y, polynomials.degree(), Y, 1);
-      return;
+  /// Over each new patch; the others keep theirs, as little of it is changed by what they receive. False where stopped.
+  bool measure_missed(const MeshSolution& solution) {
+    std::vector<double> missed;
+    std::vector<std::uint32_t> patches;
+    for (std::uint32_t p = 0; p < solution.mesh.patches.size(); ++p) {
+      const bool kept = !origins_.empty() && origins_[p].kept;
+      missed.push_back(kept ? missed_[origins_[p].patch] : 0);
+      if (!kept) patches.push_back(p);
     }
-    const PatchPolynomials before(mesh_before_, polynomials.degree());
-    std::vector<double> change(mesh.patches.size()), term(terms), term_before(terms);
-    std::vector<WeightedPoint> points;
-    for (std::uint32_t p = 0; p < change.size(); ++p) {
-      const Origin& origin = origins_[p];
-      if (origin.kept) {
-        change[p] = change_[origin.patch];
-        continue;
-      }
-      for (const AreaCell& cell : cells_of(mesh.loop(mesh.pieces_of(mesh.patches[p]).front()))) {
-        gauss_points(cell, 4, points);
-        for (const WeightedPoint& x : points) {
-          polynomials.terms_at(p, x.point, term);
-          before.terms_at(origin.patch, x.point, term_before);
-          double apart = 0;
-          for (std::size_t t = 0; t < terms; ++t)
-            apart +=
-                term[t] * coefficients[p * terms + t] - term_before[t] * coefficients_before_[origin.patch * terms + t];
-          change[p] += x.weight * apart * apart;
-        }
-      }
-    }
-    change_ = std::move(change);
+    const auto squares = residual_.squares(solution, patches, options_.stop);
+    if (!squares) return false;
+    for (std::size_t k = 0; k < patches.size(); ++k) missed[patches[k]] = (*squares)[k];
+    missed_ = std::move(missed);
+    return true;
   }
 
   void refine() {
@@ -398,6 +380,7 @@ class ReferenceSolver {
   PairOptions pairs_;
   RefinedMesh refined_;
   const PolygonSoup& soup_;
+  SampledResidual residual_;
   std::deque<Checkpoint> checkpoints_;  // of all levels, which stay locked
   std::uint32_t new_elements_ = 0;      // those come first
   PairRows rows_;
@@ -405,10 +388,9 @@ class ReferenceSolver {
   std::vector<double> start_;     // B to begin the next level with, by element and band; empty on the first
   std::vector<double> shooting_;  // of the solution, by element and band
   std::vector<double> share_;     // of the mesh's squared error, by patch
-  std::vector<double> change_;    // by patch: what dividing the patch it comes from has changed in it, squared
+  std::vector<double> missed_;    // by patch: what gathering at points misses, squared
   PatchMesh mesh_before_;         // that of the solution there is
-  std::vector<double> coefficients_before_;  // of its luminance
-  std::vector<Origin> origins_;              // of the patches, in that mesh; empty on the first level
+  std::vector<Origin> origins_;   // of the patches, in that mesh; empty on the first level
   double solver_error_ = 0;
   ReferenceSolution result_;
 };

@@ -68,10 +68,10 @@ void clear_finished_checkpoint(const std::filesystem::path& checkpoint);
 /// error falls with the fourth power of the patches' size, and its estimate with the third.
 ///
 /// Its error in the norm of equation 7 (comparison.h), as a function of the point, is estimated patch by patch, in
-/// squares: its distance to the same with quadratic polynomials; twice what cubic ones leave over of the elements'
-/// means; and half of what dividing it has changed, as the other two are blind to terms of fourth degree where B is
-/// symmetric about a patch's middle. To this comes what errors of form factors can do, element by element: the solution
-/// of the same system that their errors emit.
+/// squares: its distance to the same with quadratic polynomials, and one and a half of what gathering at points misses
+/// (sampled_residual.h), which sees what the means of elements do not show, such as shadows that are small against
+/// them. Patches that are not divided keep the latter. To this comes what errors of form factors can do, element by
+/// element: the solution of the same system that their errors emit.
 ///
 /// Patches with the largest share of the error are divided (RefinedMesh), along shadow boundaries first, until the
 /// error is what is wanted; the other patches keep their form factors. All of it depends on scene and options only:

@@ -14,7 +14,7 @@ namespace exitance {
 /// What a solution is off by, as errors of comparison.h.
 struct SolutionError {
   double total = 0;        ///< the sum of what follows
-  double mesh = 0;         ///< estimated: what one degree more or less makes, and what polynomials leave over
+  double mesh = 0;         ///< estimated: what one degree more or less makes, and what gathering at points misses
   double integration = 0;  ///< bound, as far as the errors of form factors hold
   double solver = 0;       ///< bound
 };

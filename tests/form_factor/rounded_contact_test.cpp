@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -60,6 +61,18 @@ TEST(RoundedContact, ASolidOnTheSourceBuriesWhereItPiercesTheReceiver) {
   EXPECT_TRUE(through.contact(1, 0).buries(through.at({3, 3, 8})));
   EXPECT_FALSE(through.contact(1, 0).buries(through.at({1, 3, 8})));
   EXPECT_FALSE(below.contact(1, 0).buries(below.at({3, 3, 8})));
+}
+
+/// A solid that stands on the source does not bury what lies on its own sides: those points see the floor beside it.
+TEST(RoundedContact, ASolidDoesNotBuryItsOwnSides) {
+  const Post post(4, true);
+  const std::array<Vec3, 4> middle{{{3.5, 2, 2}, {5, 3.5, 2}, {3.5, 5, 2}, {2, 3.5, 2}}};
+  for (std::uint32_t side = 0; side < 4; ++side) {
+    for (const double share : {-0.4, 0.0, 0.4}) {
+      const Vec3 x = middle[side] + share * (middle[(side + 1) % 4] - middle[(side + 3) % 4]) + Vec3{0, 0, share};
+      EXPECT_FALSE(post.contact(4 + side, 0).buries(post.at(x))) << side << ' ' << share;
+    }
+  }
 }
 
 }  // namespace

@@ -10,13 +10,12 @@
 #include <memory>
 #include <stdexcept>
 
-#include "src/form_factor/area_cell.h"
-#include "src/reference/comparison.h"
-#include "src/reference/patch_polynomials.h"
 #include "src/scene/input_error.h"
 #include "src/scene/reader.h"
 #include "tests/output/scratch_folder.h"
 #include "tests/reference/half_shadow.h"
+#include "tests/reference/pointwise_error.h"
+#include "tests/reference/small_shadow.h"
 
 namespace exitance {
 namespace {
@@ -32,34 +31,6 @@ ReferenceSolution solve(const Scene& scene, const ReferenceOptions& options) {
   return solve_reference(scene, soup, options);
 }
 
-/// The norm of equation 7 of what the floor's solution misses of the closed form, as functions.
-double true_error(const SolutionRecord& record, double edge, double angle) {
-  const PatchMesh& mesh = record.mesh;
-  const PatchPolynomials polynomials(mesh, record.degree);
-  const std::vector<double> coefficients = polynomials.fit(record.B, 1);
-  std::vector<double> terms(polynomials.terms());
-  std::vector<WeightedPoint> points;
-  double missed = 0, all = 0;
-  for (std::uint32_t e = 0; e < mesh.elements.size(); ++e) {
-    const std::uint32_t patch = mesh.elements[e].patch;
-    const std::uint32_t surface = mesh.patches[patch].surface;
-    const double shift = record.B[e] - polynomials.mean(e, coefficients, 1, 0);
-    for (const AreaCell& cell : cells_of(mesh.loop(mesh.elements[e]))) {
-      gauss_points(cell, 12, points);
-      for (const WeightedPoint& x : points) {
-        polynomials.terms_at(patch, x.point, terms);
-        double value = shift;
-        for (std::size_t t = 0; t < terms.size(); ++t) value += terms[t] * coefficients[patch * terms.size() + t];
-        const Vec3 p = turned_about_z(x.point, -angle);
-        const double truth = surface == 0 ? half_shadow_B(edge, p.x, p.y) : surface == 1 ? 1 : 0;
-        missed += x.weight * (value - truth) * (value - truth);
-        all += x.weight * truth * truth;
-      }
-    }
-  }
-  return std::sqrt(missed / all);
-}
-
 TEST(ReferenceSolutionTest, AFurnaceIsConstant) {
   const ReferenceSolution s = solve(read_scene(EXITANCE_SOURCE_DIR "/data/furnace_cube.toml"), wanted(1e-9));
   EXPECT_EQ(s.end, ReferenceEnd::reached);
@@ -68,17 +39,26 @@ TEST(ReferenceSolutionTest, AFurnaceIsConstant) {
   for (const double H : s.record.H) EXPECT_NEAR(H, 2, 2e-9);
 }
 
-/// Refines to the error and expects that at every level the estimate holds and is not more than 60 times too large.
-void expect_error_holds(double edge, double angle, double error) {
-  const Scene scene = half_shadow(edge, angle);
+/// Refines to the error and expects that at every level the estimate holds and is not more than `most` times too large.
+void expect_error_holds(const Scene& scene, const Truth& truth, int halvings, double error, double most) {
   const PolygonSoup soup = make_soup(scene);
   const ReferenceSolution s = solve_reference(scene, soup, wanted(error), [&](const ReferenceSolution& level) {
-    const double missed = true_error(level.record, edge, angle), estimated = level.record.error.total;
-    EXPECT_LE(missed, estimated) << edge << ' ' << angle << ", level " << level.levels.size();
-    EXPECT_GE(60 * missed, estimated) << edge << ' ' << angle << ", level " << level.levels.size();
+    const SolutionRecord& record = level.record;
+    const double missed = pointwise_error(record.mesh, record.degree, record.B, truth, halvings);
+    EXPECT_LE(missed, record.error.total) << "level " << level.levels.size();
+    EXPECT_GE(most * missed, record.error.total) << "level " << level.levels.size();
   });
   EXPECT_LE(s.record.error.total, error);
   EXPECT_GE(s.levels.size(), 2u);
+}
+
+void expect_error_holds(double edge, double angle, double error) {
+  SCOPED_TRACE(testing::Message() << "edge " << edge << ", turned by " << angle);
+  const Truth truth = [=](std::uint32_t surface, const Vec3& point) {
+    const Vec3 p = turned_about_z(point, -angle);
+    return surface == 0 ? half_shadow_B(edge, p.x, p.y) : surface == 1 ? 1 : 0;
+  };
+  expect_error_holds(half_shadow(edge, angle), truth, 0, error, 60);
 }
 
 TEST(ReferenceSolutionTest, TheErrorHoldsWithoutShadows) {
@@ -89,6 +69,17 @@ TEST(ReferenceSolutionTest, TheErrorHoldsInAPenumbra) {
   for (const double angle : {0.0, 0.3}) {
     expect_error_holds(0.5, angle, 1e-5);   // all of the floor
     expect_error_holds(0.65, angle, 1e-5);  // it ends in the floor
+  }
+}
+
+/// An element of the first mesh is 0.25 wide: it sees little of a shadow in its mean, or of one between its points.
+TEST(ReferenceSolutionTest, TheErrorHoldsWhereShadowsAreSmallAgainstTheFirstMesh) {
+  for (const SmallSheet& sheet : {SmallSheet{0.62, 0.31, 0.06, 0.01}, {0.62, 0.31, 0.02, 0.003}}) {
+    SCOPED_TRACE(testing::Message() << "sheet of " << sheet.edge << " at " << sheet.x);
+    const Truth truth = [&](std::uint32_t surface, const Vec3& p) {
+      return surface == 0 ? small_shadow_B(sheet, p.x, p.y) : surface == 1 ? 1 : 0;
+    };
+    expect_error_holds(small_shadow(sheet), truth, 6, 2e-3, 10);
   }
 }
 
