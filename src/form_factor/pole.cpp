@@ -132,40 +132,61 @@ PoleError corner_poles(std::span<const SeenEdge> edges, const Vec3& x, std::span
   const Vec3 middle = (1.0 / 3) * (c[0] + c[2] + share * c[1] + (1 - share) * c[3]);  // a triangle's share is 1
   PoleError result;
   double worst = 0;
-  const auto add_corner = [&](const SeenEdge& e, const Vec3& at) {
+  // `differs`: what is seen from a point beside the corner and from the middle, by how much.
+  const auto add_corner = [&](const Vec3& at, const auto& differs) {
     const Vec3 far = std::ranges::max(places, {}, [&](const Vec3& p) { return norm(p - at); });
     const Nearest nearest = nearest_of(places, at);
     const Vec3 near = nearest.point, along = far - near;
-    const double width = norm(along), d = norm(at - near);
+    const double width = norm(along), apart = norm(at - near),
+                 d = apart > kSame * width ? apart : width / (order * order);
     if (!(d < width) || (cell.corners == 3 && norm(cell.corner[2] - at) < kSame * width)) return;
     // Beside a side the corner has part of the cell to its left and to its right.
     const double there = nearest.is_corner ? dot(at - near, along) / width : 0.5 * width,
                  beside = nearest.is_corner ? std::sqrt(std::max(0.0, d * d - there * there)) : d;
     const double rate = ellipse_through({2 * there / width - 1, 2 * beside / width});
-    const double differs = std::fabs(contribution(e, near, normal) - contribution(e, middle, normal));
-    const bool below = cell.corners == 3 && norm(c[2] - near) < kSame * width;
-    const double beside_it = below ? area * (d / width) * (d / width) : std::min(area, d * d);
-    add(result, worst, kCornerSize * beside_it * differs * std::pow(rate, -2 * order), rate);
+    const bool of_cell = apart <= kSame * width || (cell.corners == 3 && norm(c[2] - near) < kSame * width);
+    const double beside_it = of_cell ? area * (d / width) * (d / width) : std::min(area, d * d);
+    add(result, worst, kCornerSize * beside_it * differs(near) * std::pow(rate, -2 * order), rate);
+  };
+  const auto add_end = [&](const SeenEdge& e, const Vec3& at) {
+    add_corner(at, [&](const Vec3& near) {
+      return std::fabs(contribution(e, near, normal) - contribution(e, middle, normal));
+    });
+  };
+  // An edge that turns sweeps over those that it meets.
+  const auto add_foot = [&](const SeenEdge& e, const Vec3& at) {
+    add_corner(at, [&](const Vec3& near) {
+      double most = 0;
+      for (const SeenEdge& g : edges) {
+        if (g.id != e.id && meet(e, g)) most = std::max(most, contribution(g, near, normal));
+      }
+      return most;
+    });
   };
   for (const SeenEdge& e : edges) {
     for (const Vec3& end : {e.from, e.to}) {
       const auto is_end = [&](const Vec3& v) { return norm((1 / norm(v - x)) * (v - x) - end) < kSame; };
       if (is_end(e.a)) {
-        add_corner(e, e.a);
+        add_end(e, e.a);
       } else if (is_end(e.b)) {
-        add_corner(e, e.b);
+        add_end(e, e.b);
       } else if (const auto at = std::ranges::find_if(contacts, is_end); at != contacts.end()) {
-        add_corner(e, *at);
+        add_end(e, *at);
       } else {
         for (const SeenEdge& g : edges) {
           if (norm(g.from - end) >= kSame && norm(g.to - end) >= kSame) continue;
           if (const auto pierced = meeting_point(e, g, x, end)) {
-            add_corner(e, *pierced);
+            add_end(e, *pierced);
             break;
           }
         }
       }
     }
+    // Seen elsewhere than from where it stands on the cell's plane, an edge turns about that point as well.
+    const double height = dot(normal, c[0] - e.a), rise = dot(normal, e.b - e.a);
+    if (rise == 0 || !(height / rise > -kSame) || !(height / rise < 1 + kSame)) continue;
+    const Vec3 foot = e.a + (height / rise) * (e.b - e.a), direction = (1 / norm(foot - x)) * (foot - x);
+    if (norm(direction - e.from) >= kSame && norm(direction - e.to) >= kSame) add_foot(e, foot);
   }
   return result;
 }

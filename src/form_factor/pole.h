@@ -26,10 +26,13 @@ PoleError crossing_poles(std::span<const SeenEdge> edges, const AreaCell& cell, 
 /// little area there, about d², that its coefficients fall as if it saw nothing of this: what is seen there differs by
 /// V, what the edge contributes from beside the corner less what it contributes from the cell's middle. In the interval
 /// [−1, 1] from the cell's point nearest to the corner to the one farthest from it, the corner is a point z of the
-/// complex plane, and a rule of order n errs by d² V |z + √(z² − 1)|^-2n. Edges end at vertices and where they pierce a
-/// surface that bounds what is seen. A triangle's last corner is no pole: its points lie on rays from there (ray_fall);
-/// one at distance d from it is, but less than d² of the triangle is near: its area times (d / length)². `x`: where the
-/// edges are seen from. `contacts`: further corners in the cell's plane, such as those where edges pierce it.
+/// complex plane, and a rule of order n errs by d² V |z + √(z² − 1)|^-2n. Edges end at vertices and where they pierce
+/// a surface that bounds what is seen. One that stands on the cell's plane but is seen elsewhere turns about that
+/// point; there V is what the edges that it meets contribute. A triangle's last corner is no pole: its points lie on
+/// rays from there (ray_fall); one at distance d from it is, but of the triangle only its area times (d / length)² is
+/// near. So it is with any other corner of the cell that is one, where rules err as n^-4: they see what is farther
+/// off than length / n², which stands for d. `x`: where the edges are seen from. `contacts`: further corners in the
+/// cell's plane, such as those where edges pierce it.
 PoleError corner_poles(std::span<const SeenEdge> edges, const Vec3& x, std::span<const Vec3> contacts,
                        const AreaCell& cell, int order);
 
