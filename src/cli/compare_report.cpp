@@ -114,7 +114,7 @@ std::string worst_pairs(const Entry& e) {
 }  // namespace
 
 std::string in_words(const CompareReport& r) {
-  std::string text = fmt::format("{}: {} patches; pairs", r.scene, r.patches);
+  std::string text = fmt::format("{}: {} patches; ordered pairs", r.scene, r.patches);
   for (std::size_t k = 0; k < kClasses.size(); ++k) {
     text += fmt::format("{} {} {}", k == 0 ? "" : ",", r.pairs[k], k == 0 ? "facing away" : kClasses[k]);
   }

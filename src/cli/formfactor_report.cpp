@@ -35,6 +35,12 @@ std::string why_no_closure(const FormFactorReport& r) {
   return "no patch sees another";
 }
 
+/// What holds, or fails, of so many; and what comes nearest to failing, or is worst.
+std::string verdict(bool holds, const std::string& of_what, double amount, double allowed, const std::string& where) {
+  return fmt::format("{} {}; against its errors worst: {} {}", holds ? "holds for" : "fails, of", of_what,
+                     compared(amount, allowed), where);
+}
+
 std::optional<MatrixDefect> closure(const FormFactorReport& r) {
   return r.only_fronts ? r.matrix.closure : std::nullopt;
 }
@@ -119,6 +125,7 @@ std::string in_words(const FormFactorReport& r) {
   line("matrix", fmt::format("{} rows, {} entries, errors up to {:.3g}", r.rows, r.entries, r.matrix.largest_error));
   const double all = static_cast<double>(
       std::max<std::uint64_t>(1, std::accumulate(r.pairs.begin(), r.pairs.end(), std::uint64_t{0})));
+  line("pairs", fmt::format("{:.0f} unordered, each patch with itself included", all));
   for (std::size_t k = 0; k < kClasses.size(); ++k) {
     std::string name = k == 0 ? "pairs facing away" : fmt::format("pairs {}", kClasses[k]);
     line(name, fmt::format("{} ({:.1f} %), {:.2f} s", r.pairs[k], 100 * static_cast<double>(r.pairs[k]) / all,
@@ -143,6 +150,20 @@ std::string in_words(const FormFactorReport& r) {
                      compared(worst->amount, worst->allowed), worst->i, worst->j));
   } else {
     line("reciprocity defect", "not measured, no pair is partial");
+  }
+  if (const auto& worst = r.matrix.entry) {
+    line("F <= min(1, A_j/A_i)", verdict(worst->holds(), fmt::format("{} ordered pairs of rows", r.entries),
+                                         worst->amount, worst->allowed,
+                                         fmt::format("from row {} to {}", worst->row, worst->column)));
+  } else {
+    line("F <= min(1, A_j/A_i)", "no entry to check");
+  }
+  if (const auto worst = worst_of(r.sample.beyond_unobstructed)) {
+    line("blocked <= unblocked",
+         verdict(worst->holds(), fmt::format("{} unordered pairs integrated again", r.sample.beyond_unobstructed.size()),
+                 worst->amount, worst->allowed, fmt::format("at patches {}, {}", worst->i, worst->j)));
+  } else {
+    line("blocked <= unblocked", "not measured, no pair is partial");
   }
   if (r.rows_closed) {
     line("rows closed", fmt::format("entries changed by up to {:.3g} (row {}, column {}), factors up to {:.15g}, in {}",

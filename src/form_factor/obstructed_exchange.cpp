@@ -1,6 +1,7 @@
 #include "src/form_factor/obstructed_exchange.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "src/form_factor/outline.h"
@@ -224,9 +225,16 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
       cell.fall = std::max(cell.slowest, slowest);
     }
   } else {
-    cell.decay.next(order, cell.integral, truncation.fall, slowest);
+    cell.decay.next(order, cell.integral, truncation, slowest);
     cell.error = cell.decay.error();
     cell.fall = cell.decay.fall();
+  }
+  // Crossings are left to later rules: on a first one they cost more points than the little that they reveal.
+  std::array<PoleError, 2> poles;
+  if (compare && !cell.mixed && outline != 0) {
+    const std::vector<SeenEdge> edges = view.seen_edges();
+    poles = {order > kScoutOrder ? crossing_poles(edges, cell.shape, order) : PoleError{},
+             corner_poles(edges, scratch_.back().point, contacts_, cell.shape, order)};
   }
   if (order == kScoutOrder) {
     sightings_.clear();
@@ -242,14 +250,10 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
     cell.error = kCorners * std::fabs(mean * area - cell.integral) + kSpread * (greatest - least) * area;
     cell.fall = std::clamp(cell.fall, 0.05, 0.3);
   }
-  if (order > kScoutOrder && compare && !cell.mixed && outline != 0) {
-    const std::vector<SeenEdge> edges = view.seen_edges();
-    const double of_rule = cell.error;
-    for (const PoleError& poles : {crossing_poles(edges, cell.shape, order),
-                                   corner_poles(edges, scratch_.back().point, contacts_, cell.shape, order)}) {
-      if (poles.error > of_rule) cell.fall = std::max(cell.fall, poles.fall);
-      cell.error += poles.error;
-    }
+  const double of_rule = cell.error;
+  for (const PoleError& p : poles) {
+    if (order > kScoutOrder && p.error > of_rule) cell.fall = std::max(cell.fall, p.fall);
+    cell.error += p.error;
   }
   if (order > kScoutOrder && !cell.looked && compare && !cell.mixed && outline != 0) {
     cell.looked = find_hidden_events(view, cell, outline, scratch_.back().point);
@@ -519,6 +523,8 @@ void ObstructedExchange::refine(Viewpoint& view, double tolerance, std::uint64_t
                old.error * std::pow(old.fall, kHighestOrder) <= wanted) {
       order = kHighestOrder;  // the figure of one rule may be by chance much larger than that of the next
     }
+    // How fast the coefficients fall is a guess, which a farther jump raises to a high power.
+    if (order <= kHighestOrder && old.order > 0) order = std::min(order, std::max(3 * kScoutOrder, 2 * old.order));
     std::vector<Cell> parts;
     if (old.order == 0) {
       order = kScoutOrder;

@@ -51,8 +51,8 @@ struct PairOptions {
   double relative = 0;             ///< an error within this share of its form factor is good enough, too
   std::uint64_t points = 100'000;  ///< that an integral may take; one that needs more has not reached its tolerance
   bool both_ways = false;  ///< integrate over both patches, independently; errors then cover what the other one says
-  /// Asked before each cell of an integral, from any thread: true, once and from then on, ends the work, and what it
-  /// gave then is not to be used. May be empty.
+  /// Asked before each cell of an integral, and often while events hidden in one are looked for, from any thread: true,
+  /// once and from then on, ends the work, and what it gave then is not to be used. May be empty.
   std::function<bool()> stop = {};
 };
 

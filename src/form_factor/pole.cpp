@@ -4,6 +4,7 @@
 #include <boost/math/constants/constants.hpp>
 #include <cmath>
 #include <complex>
+#include <optional>
 #include <vector>
 
 namespace exitance {
@@ -24,6 +25,16 @@ bool meet(const SeenEdge& e, const SeenEdge& g) {
 bool in_one_plane(const SeenEdge& e, const SeenEdge& g) {
   const Vec3 d = e.b - e.a, f = g.b - g.a, apart = g.a - e.a;
   return std::fabs(dot(cross(f, d), apart)) <= 1e-10 * norm(d) * norm(f) * (norm(apart) + norm(d) + norm(f));
+}
+
+/// Where two lines that are seen to meet in a direction from x meet in space; nothing where one of them passes behind.
+std::optional<Vec3> meeting_point(const SeenEdge& e, const SeenEdge& g, const Vec3& x, const Vec3& direction) {
+  if (!in_one_plane(e, g)) return {};
+  const Vec3 d = e.b - e.a, f = g.b - g.a, across = cross(d, f);
+  const double size = dot(across, across);
+  if (!(size > kSame * kSame * dot(d, d) * dot(f, f))) return {};
+  const Vec3 at = e.a + (dot(cross(g.a - e.a, f), across) / size) * d;
+  return norm((1 / norm(at - x)) * (at - x) - direction) < kSame ? std::optional(at) : std::nullopt;
 }
 
 /// The cell's corners, and points halfway along its bent sides.
@@ -73,7 +84,8 @@ double ellipse_through(const std::complex<double>& z) {
 double contribution(const SeenEdge& e, const Vec3& x, const Vec3& normal) {
   const Vec3 p = e.a - x, q = e.b - x, across = cross(p, q);
   const double size = norm(across);
-  if (!(size > 0)) return 0.5;
+  // On the edge's line: at most half of what is seen, of an edge that stands upright nothing.
+  if (!(size > 0)) return 0.5 * norm(cross(e.b - e.a, normal)) / (norm(e.b - e.a) * norm(normal));
   return std::atan2(size, dot(p, q)) * std::fabs(dot(across, normal)) /
          (size * norm(normal) * boost::math::constants::two_pi<double>());
 }
@@ -116,33 +128,65 @@ PoleError corner_poles(std::span<const SeenEdge> edges, const Vec3& x, std::span
   // Of a quadrilateral two corners may be the same point.
   const Vec3 of_three = cross(c[1] - c[0], c[2] - c[0]),
              normal = cell.corners == 3 ? of_three : of_three + cross(c[2] - c[0], c[3] - c[0]);
-  const double area = cell.area();
+  const double area = cell.area(), share = norm(of_three) / (norm(of_three) + norm(normal - of_three));
+  const Vec3 middle = (1.0 / 3) * (c[0] + c[2] + share * c[1] + (1 - share) * c[3]);  // a triangle's share is 1
   PoleError result;
   double worst = 0;
-  const auto add_corner = [&](const SeenEdge& e, const Vec3& at) {
+  // `differs`: what is seen from a point beside the corner and from the middle, by how much.
+  const auto add_corner = [&](const Vec3& at, const auto& differs) {
     const Vec3 far = std::ranges::max(places, {}, [&](const Vec3& p) { return norm(p - at); });
     const Nearest nearest = nearest_of(places, at);
     const Vec3 near = nearest.point, along = far - near;
-    const double width = norm(along), d = norm(at - near);
+    const double width = norm(along), apart = norm(at - near),
+                 d = apart > kSame * width ? apart : width / (order * order);
     if (!(d < width) || (cell.corners == 3 && norm(cell.corner[2] - at) < kSame * width)) return;
     // Beside a side the corner has part of the cell to its left and to its right.
     const double there = nearest.is_corner ? dot(at - near, along) / width : 0.5 * width,
                  beside = nearest.is_corner ? std::sqrt(std::max(0.0, d * d - there * there)) : d;
     const double rate = ellipse_through({2 * there / width - 1, 2 * beside / width});
-    const double differs = std::fabs(contribution(e, near, normal) - contribution(e, near + 0.5 * along, normal));
-    add(result, worst, kCornerSize * std::min(area, d * d) * differs * std::pow(rate, -2 * order), rate);
+    const bool of_cell = apart <= kSame * width || (cell.corners == 3 && norm(c[2] - near) < kSame * width);
+    const double beside_it = of_cell ? area * (d / width) * (d / width) : std::min(area, d * d);
+    add(result, worst, kCornerSize * beside_it * differs(near) * std::pow(rate, -2 * order), rate);
+  };
+  const auto add_end = [&](const SeenEdge& e, const Vec3& at) {
+    add_corner(at, [&](const Vec3& near) {
+      return std::fabs(contribution(e, near, normal) - contribution(e, middle, normal));
+    });
+  };
+  // An edge that turns sweeps over those that it meets.
+  const auto add_foot = [&](const SeenEdge& e, const Vec3& at) {
+    add_corner(at, [&](const Vec3& near) {
+      double most = 0;
+      for (const SeenEdge& g : edges) {
+        if (g.id != e.id && meet(e, g)) most = std::max(most, contribution(g, near, normal));
+      }
+      return most;
+    });
   };
   for (const SeenEdge& e : edges) {
     for (const Vec3& end : {e.from, e.to}) {
       const auto is_end = [&](const Vec3& v) { return norm((1 / norm(v - x)) * (v - x) - end) < kSame; };
       if (is_end(e.a)) {
-        add_corner(e, e.a);
+        add_end(e, e.a);
       } else if (is_end(e.b)) {
-        add_corner(e, e.b);
+        add_end(e, e.b);
       } else if (const auto at = std::ranges::find_if(contacts, is_end); at != contacts.end()) {
-        add_corner(e, *at);
+        add_end(e, *at);
+      } else {
+        for (const SeenEdge& g : edges) {
+          if (norm(g.from - end) >= kSame && norm(g.to - end) >= kSame) continue;
+          if (const auto pierced = meeting_point(e, g, x, end)) {
+            add_end(e, *pierced);
+            break;
+          }
+        }
       }
     }
+    // Seen elsewhere than from where it stands on the cell's plane, an edge turns about that point as well.
+    const double height = dot(normal, c[0] - e.a), rise = dot(normal, e.b - e.a);
+    if (rise == 0 || !(height / rise > -kSame) || !(height / rise < 1 + kSame)) continue;
+    const Vec3 foot = e.a + (height / rise) * (e.b - e.a), direction = (1 / norm(foot - x)) * (foot - x);
+    if (norm(direction - e.from) >= kSame && norm(direction - e.to) >= kSame) add_foot(e, foot);
   }
   return result;
 }

@@ -18,7 +18,7 @@ struct PoleError {
 /// to the plane through x and g. Where that line runs past a cell, the form factor has a pole there that hides below
 /// the falling coefficients of a rule until it alone is left: a share N²/M of what the triangle between both edges
 /// contributes. With δ the pole's distance from the cell, in halves of the cell's width across, a rule of order n errs
-/// by the pole's size times (1 + δ + √(δ² + 2δ))^-2n. Edges in one plane cross at one point: no pole.
+/// by the pole's size times (1 + δ + √(δ² + 2δ))^-2n. Edges in one plane cross at one point, which is a corner.
 PoleError crossing_poles(std::span<const SeenEdge> edges, const AreaCell& cell, int order);
 
 /// About a corner that ends an edge as seen from x, in the cell's plane or at a distance d from it, the form factor is
@@ -26,8 +26,12 @@ PoleError crossing_poles(std::span<const SeenEdge> edges, const AreaCell& cell, 
 /// little area there, about d², that its coefficients fall as if it saw nothing of this: what is seen there differs by
 /// V, what the edge contributes from beside the corner less what it contributes from the cell's middle. In the interval
 /// [−1, 1] from the cell's point nearest to the corner to the one farthest from it, the corner is a point z of the
-/// complex plane, and a rule of order n errs by d² V |z + √(z² − 1)|^-2n. A triangle's last corner is no pole: its
-/// points lie on rays from there (ray_fall). `x`: where the edges are seen from. `contacts`: further corners in the
+/// complex plane, and a rule of order n errs by d² V |z + √(z² − 1)|^-2n. Edges end at vertices and where they pierce
+/// a surface that bounds what is seen. One that stands on the cell's plane but is seen elsewhere turns about that
+/// point; there V is what the edges that it meets contribute. A triangle's last corner is no pole: its points lie on
+/// rays from there (ray_fall); one at distance d from it is, but of the triangle only its area times (d / length)² is
+/// near. So it is with any other corner of the cell that is one, where rules err as n^-4: they see what is farther
+/// off than length / n², which stands for d. `x`: where the edges are seen from. `contacts`: further corners in the
 /// cell's plane, such as those where edges pierce it.
 PoleError corner_poles(std::span<const SeenEdge> edges, const Vec3& x, std::span<const Vec3> contacts,
                        const AreaCell& cell, int order);

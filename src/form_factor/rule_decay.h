@@ -1,6 +1,8 @@
 #pragma once
 // What the rules that a cell is measured with, one after the other, tell of the error of the last one.
 
+#include "src/form_factor/area_cell.h"
+
 namespace exitance {
 
 /// An analytic integrand's Legendre coefficients fall as ρ^-k, and the Gauss rule of order n errs as its coefficients
@@ -11,16 +13,18 @@ namespace exitance {
 /// less of what comes far behind them, but see more of the integrand; so what counts is a fall between the two, not
 /// faster than the differences' own, and not faster than 0.2 an order, because the first few may fall by chance. Two
 /// rules may agree by chance, too: where the first was expected to err more than they differ by, that counts twice in
-/// the geometric mean of both. The error given is ten times what is expected.
+/// the geometric mean of both. Of a first rule too low to expect anything, the second's coefficients tell: those of
+/// order 2m, which make the error a tenth of their size at least. The error given is ten times what is expected. All
+/// of it is an extrapolation over 2 (n − m) orders: n should be no more than 2m, of a first rule 3m.
 class RuleDecay {
  public:
   RuleDecay() = default;
   /// A first rule; its error as it is expected to be from its own coefficients [as the integral], or 0: not known.
   RuleDecay(int order, double integral, double expected) : order_(order), integral_(integral), expected_(expected) {}
 
-  /// The next one, of higher order. The integral is not negative. Falls from one order to the next, 0 to 1:
-  /// `fall_of_rule` of the coefficients that it finds itself, `slowest` one that is known beforehand.
-  void next(int order, double integral, double fall_of_rule, double slowest = 0);
+  /// The next one, of higher order. The integral is not negative. `own`: what its coefficients tell. `slowest`: a fall
+  /// from one order to the next, 0 to 1, that is known beforehand.
+  void next(int order, double integral, const Truncation& own, double slowest = 0);
 
   double error() const { return kSure * expected_; }  ///< of the last rule, after next(); 0 where both rules are equal
   double fall() const { return fall_; }               ///< at most 1: of coefficients, from one order to the next

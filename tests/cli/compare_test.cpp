@@ -171,8 +171,9 @@ TEST_F(CompareTest, AnyNumberOfThreadsGivesTheSameNumbers) {
 TEST_F(CompareTest, TellsItInWords) {
   const Outcome outcome = run("compare " + scene + " --patch-size 1.5 --against rays:16 --worst 2");
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("99.9 %"), HasSubstr("rays:16: worst pairs"),
-                                          HasSubstr("too few rays"), HasSubstr("truth: exact visibility to 1e-10")));
+  EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("99.9 %"), HasSubstr(" patches; ordered pairs"),
+                                          HasSubstr("rays:16: worst pairs"), HasSubstr("too few rays"),
+                                          HasSubstr("truth: exact visibility to 1e-10")));
 }
 
 TEST_F(CompareTest, BadInputIsOneLine) {

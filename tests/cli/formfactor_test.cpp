@@ -122,7 +122,9 @@ TEST_F(FormFactorTest, EveryFormatHoldsTheSameMatrix) {
   const Outcome printed = run("formfactor " + scene);
   EXPECT_EQ(printed.code, 0);
   EXPECT_EQ(printed.out, contents(scratch / "cube.csv"));
-  EXPECT_THAT(printed.err, AllOf(HasSubstr("pairs open"), HasSubstr("memory: about")));
+  EXPECT_THAT(printed.err, AllOf(HasSubstr("pairs open"), HasSubstr("memory: about"), HasSubstr("21 unordered"),
+                                 HasSubstr("holds for 30 ordered pairs of rows"),
+                                 HasSubstr("blocked <= unblocked  not measured, no pair is partial")));
   EXPECT_EQ(scratch.files(), 3u);  // no checkpoint stays
 }
 
@@ -231,6 +233,9 @@ TEST_F(FormFactorTest, ClosedBoxSumsToOneWithinItsErrors) {
   EXPECT_GT(told.at("estimated_memory_bytes"), 0);
   for (const char* key : {"version", "commit", "compiler", "libraries", "threads", "seed", "scene_hash", "options"})
     EXPECT_TRUE(told.at("manifest").contains(key)) << key;
+  const Outcome words = run("formfactor " + scene + " --patch-size 1 --tolerance 1e-4 -o " + path("words.csv"));
+  EXPECT_THAT(words.out, testing::ContainsRegex("F <= min\\(1, A_j/A_i\\)  holds for [0-9]+ ordered pairs"));
+  EXPECT_THAT(words.out, testing::ContainsRegex("blocked <= unblocked  holds for [0-9]+ unordered pairs"));
 }
 
 TEST_F(FormFactorTest, ContactsAndOpenScenesHaveNoClosure) {

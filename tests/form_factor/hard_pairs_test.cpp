@@ -88,11 +88,17 @@ Held held(const std::vector<Entry>& entries, double tolerance) {
   return result;
 }
 
+/// At the dearest tolerance every third one, of all families; and pairs that once were not within, numbered from
+/// 500000.
 TEST(HardPairs, FormFactorsAreWithinTheirErrors) {
   const std::vector<Entry> entries = stored();
   EXPECT_GE(entries.size(), 60u);
+  std::vector<Entry> some;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    if (k % 3 == 0 || entries[k].number >= 500000) some.push_back(entries[k]);
+  }
   for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
-    const Held h = held(entries, tolerance);
+    const Held h = held(tolerance < 1e-6 ? some : entries, tolerance);
     EXPECT_EQ(h.beyond, 0u) << "tolerance " << tolerance << "\n" << h.list;
   }
 }
