@@ -209,7 +209,8 @@ class ReferenceSolver {
     const std::uint32_t degree = PatchPolynomials::degree_of_grid(kElementsPerEdge);
     std::vector<double> B = solved(system, degree, start_), lower = solved(system, degree - 1, B);
     if (!measure_missed({mesh, system, degree, B, shooting_}))
-      return ended(ReferenceEnd::stopped, "stopped while the first level's error was estimated" + kept());
+      return ended(ReferenceEnd::stopped,
+                   "stopped after all rows of the first level, while its error was estimated" + kept());
 
     SolutionRecord& record = result_.record;
     record.mesh = mesh;
