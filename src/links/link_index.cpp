@@ -88,14 +88,11 @@ void LinkIndex::mark_stale(std::uint32_t receiver, std::uint32_t source) {
   stale = true;
 }
 
-std::span<Link> LinkIndex::set_energies_of(std::uint32_t receiver) {
-  std::vector<Link>& links = blocks_[receiver].links;
-  if (keeping_) {
-    std::vector<double> energies;
-    energies.reserve(links.size());
-    for (const Link& link : links) energies.push_back(link.energy);
-    changes_[receiver].emplace_back(std::move(energies));
-  }
+std::span<Link> LinkIndex::energies_of(std::uint32_t receiver, std::uint32_t source) {
+  Block& block = blocks_[receiver];
+  const auto [first, last] = range(block, source);
+  const std::span<Link> links = std::span(block.links).subspan(first, last - first);
+  if (keeping_ && !links.empty()) changes_[receiver].emplace_back(Replacement{source, {links.begin(), links.end()}});
   return links;
 }
 
@@ -119,11 +116,8 @@ void LinkIndex::roll_back() noexcept {
       } else if (const auto* replaced = std::get_if<Replacement>(&change)) {
         std::ranges::copy(replaced->links,
                           links.begin() + static_cast<std::ptrdiff_t>(range(blocks_[r], replaced->source).first));
-      } else if (const auto* at = std::get_if<std::size_t>(&change)) {
-        links[*at].stale = false;
       } else {
-        const auto& energies = std::get<std::vector<double>>(change);
-        for (std::size_t i = 0; i < links.size(); ++i) links[i].energy = energies[i];
+        links[std::get<std::size_t>(change)].stale = false;
       }
     }
   }

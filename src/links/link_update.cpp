@@ -134,12 +134,16 @@ class Update {
         for (; next < below; ++next) look(next, {});
       }
     };
-    links_.for_each_source(r, [&](std::uint32_t s, std::span<const Link> links) {
-      look_at_new(s);
-      look(s, links);
-      next = s + 1;
-    });
-    look_at_new(static_cast<std::uint32_t>(task_.tree->roots().size()));
+    if (task_.sources != nullptr) {
+      for (const std::uint32_t s : *task_.sources) look(s, std::as_const(links_).between(r, s));
+    } else {
+      links_.for_each_source(r, [&](std::uint32_t s, std::span<const Link> links) {
+        look_at_new(s);
+        look(s, links);
+        next = s + 1;
+      });
+      look_at_new(static_cast<std::uint32_t>(task_.tree->roots().size()));
+    }
     for (const std::uint32_t s : skipped) links_.mark_stale(r, s);
     skipped_ += skipped.size();
   }

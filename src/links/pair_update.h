@@ -47,10 +47,14 @@ class PairUpdate {
   };
   /// What is known of a link when its descendants are looked at.
   struct Above {
+    Above* above = nullptr;  ///< null: of whole patches
+    Ends ends;
     bool renewed = false;         ///< an end has moved, or it was left stale: everything about it is new
     bool affected = false;        ///< by the old or the new place of an object
     std::optional<Sight> before;  ///< in the scene as it was, among the objects that moved, where that was asked
-    Sight sight;                  ///< in the scene as it is
+    std::optional<Sight> now;     ///< in the scene as it is, where that was asked
+
+    bool blocked() const { return now && now->state == Sight::State::blocked; }
   };
 
   // Of a scope.
@@ -68,8 +72,10 @@ class PairUpdate {
   bool divides(const Ends& ends, LinkCode code, double energy, bool blocked) const;
   bool wants_change(std::span<const Link> links) const;
   bool touches_changed(const Sight& sight) const;
+  const Sight& sight_of(Above& link);
+  bool is_touched(const Above& link);
 
-  void visit(std::span<const Link> old, const Above& above, bool root);
+  void visit(std::span<const Link> old, Above* above, bool renewed);
   void grow_roots(const Ends& ends);
   void grow(const Ends& ends, LinkCode code, const Sight& sight);
   Link ghost(const Ends& ends, LinkCode code, double form_factor, const Sight& sight) const;

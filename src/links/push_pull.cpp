@@ -354,20 +354,33 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
   return most;
 }
 
-void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance) {
-  for_each_root(tree, [&](std::uint32_t r) {
-    const std::span<Link> of_receiver = links.set_energies_of(r);
-    for (std::size_t i = of_receiver.size(); i-- > 0;) {
-      Link& link = of_receiver[i];
-      if (!link.ghost) {
-        link.energy = luminance[link.source] *
-                      judged_form_factor(tree.node(link.destination), tree.node(link.source), link.form_factor);
-        continue;
-      }
-      link.energy = 0;
-      for (std::size_t k = i + 1; k < i + link.next; k += of_receiver[k].next)
-        link.energy = std::max(link.energy, of_receiver[k].energy);
+namespace {
+
+/// Of links with all their descendants.
+void set_energies(std::span<Link> links, const PatchTree& tree, std::span<const double> luminance) {
+  for (std::size_t i = links.size(); i-- > 0;) {
+    Link& link = links[i];
+    if (!link.ghost) {
+      link.energy = luminance[link.source] *
+                    judged_form_factor(tree.node(link.destination), tree.node(link.source), link.form_factor);
+      continue;
     }
+    link.energy = 0;
+    for (std::size_t k = i + 1; k < i + link.next; k += links[k].next)
+      link.energy = std::max(link.energy, links[k].energy);
+  }
+}
+
+}  // namespace
+
+void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance) {
+  for_each_root(tree, [&](std::uint32_t r) { set_energies(links.energies_of(r), tree, luminance); });
+}
+
+void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance,
+                  std::span<const std::uint32_t> sources) {
+  for_each_root(tree, [&](std::uint32_t r) {
+    for (const std::uint32_t s : sources) set_energies(links.energies_of(r, s), tree, luminance);
   });
 }
 

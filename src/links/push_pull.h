@@ -90,8 +90,11 @@ class NodeRadiosity {
   std::vector<std::uint8_t> has_received_, there_;  ///< by root
 };
 
-/// Sets the energy of every link, B F of its source.
+/// Sets the energy of every link, B F of its source; or of all links from some patches. REQUIRES of the first: the
+/// index keeps no changes.
 void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance);
+void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance,
+                  std::span<const std::uint32_t> sources);
 
 /// Form factor by which a link's energy is judged: form_factor itself; where no point of the receiver lies in front of
 /// the source, but some of it does, what a small source at the distance of the nodes' middles would have.
