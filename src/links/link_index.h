@@ -112,11 +112,17 @@ class LinkIndex {
     std::vector<Link> links;
     std::vector<Pair> pairs;  ///< ascending
   };
+  /// What was in place of links that were replaced, and all pairs as they stood.
+  struct Replaced {
+    std::vector<Replacement> links;
+    std::vector<Pair> pairs;
+    std::size_t size = 0;  ///< of the block
+  };
+  /// The same of energies, and the place of a link that was not stale.
+  using Change = std::variant<Replaced, Replacement, std::size_t>;
 
-  /// What was in place of what changed: a block, links in it, the place of one that was not stale.
-  using Change = std::variant<Block, Replacement, std::size_t>;
-
-  std::pair<std::size_t, std::size_t> range(const Block& block, std::uint32_t source) const;
+  static std::pair<std::size_t, std::size_t> range(const Block& block, std::uint32_t source);
+  static void arrange(Block& block, std::vector<Pair>&& pairs, std::size_t size, std::span<const Replacement> put);
 
   std::vector<Block> blocks_;
   std::vector<std::vector<Change>> changes_;  ///< by receiver

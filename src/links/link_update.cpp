@@ -163,7 +163,7 @@ class Update {
       if (!worker.update({r, s}, old, made)) continue;
       if (made.size() > old.size()) added += made.size() - old.size();
       if (added > left_) refuse();
-      replacements.push_back({s, made});
+      replacements.push_back({s, std::move(made)});
     }
     if (replacements.empty()) return;
     std::uint64_t left = left_;
@@ -172,17 +172,30 @@ class Update {
     } while (!left_.compare_exchange_weak(left, left - added));
     if (differences_ != nullptr) {
       for (const LinkIndex::Replacement& r_s : replacements) {
-        receive(std::as_const(links_).between(r, r_s.source), -1);
-        receive(r_s.links, 1);
+        receive_difference(std::as_const(links_).between(r, r_s.source), r_s.links);
       }
     }
     links_.replace(r, replacements);
   }
 
-  void receive(std::span<const Link> links, double sign) {
-    for (const Link& link : links) {
-      if (!link.ghost && link.visibility > 0)
-        differences_->receive(link.destination, sign * link.transfer(), link.source);
+  /// What links between two patches bring more than those before.
+  void receive_difference(std::span<const Link> before, std::span<const Link> now) {
+    const auto receive = [&](const Link& link, double more) {
+      if (more != 0) differences_->receive(link.destination, more, link.source);
+    };
+    const auto brings = [](const Link& link) { return link.ghost ? 0 : link.transfer(); };
+    std::size_t k = 0, n = 0;
+    while (k < before.size() || n < now.size()) {
+      if (n == now.size() || (k < before.size() && before[k].code < now[n].code)) {
+        receive(before[k], -brings(before[k]));
+        ++k;
+      } else if (k == before.size() || now[n].code < before[k].code) {
+        receive(now[n], brings(now[n]));
+        ++n;
+      } else {
+        receive(now[n], brings(now[n]) - brings(before[k]));
+        ++k, ++n;
+      }
     }
   }
 

@@ -170,8 +170,13 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (only_significant() && !renewed && link.energy < task_.B_eps) return leave_stale();
     changed_ = true;
     if (!face_each_other(ends)) return;
+    const double Y = task_.luminance[ends.source];
+    if (only_significant() && !link.ghost && Y * link.transfer() < task_.B_eps) {
+      const Node &to = tree_.node(ends.receiver), &from = tree_.node(ends.source);
+      if (Y * most_form_factor(to, from, task_.now->soup()) < task_.B_eps) return leave_stale();
+    }
     F = sight_.form_factor(ends.receiver, ends.source);
-    const double most = std::max(energy(ends, F), task_.luminance[ends.source] * link.transfer());
+    const double most = std::max(energy(ends, F), Y * link.transfer());
     if (only_significant() && !link.ghost && most < task_.B_eps) return leave_stale();
     here.affected = evaluate = true;
     may_change = task_.scope != LinkScope::values;
