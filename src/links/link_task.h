@@ -61,4 +61,7 @@ struct LinkWork {
   LinkWork& operator+=(const LinkWork& other);
 };
 
+/// Throws LimitError: the task would make more links than it may.
+[[noreturn]] void refuse_more_links(const LinkTask& task);
+
 }  // namespace exitance

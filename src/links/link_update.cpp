@@ -1,6 +1,5 @@
 #include "src/links/link_update.h"
 
-#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -13,7 +12,6 @@
 
 #include "src/links/pair_update.h"
 #include "src/links/root_shadows.h"
-#include "src/scene/input_error.h"
 
 namespace exitance {
 namespace {
@@ -160,15 +158,16 @@ class Update {
     std::uint64_t added = 0;
     for (const std::uint32_t s : sources) {
       const std::span<const Link> old = std::as_const(links_).between(r, s);
-      if (!worker.update({r, s}, old, made)) continue;
+      const std::uint64_t left = left_;
+      if (!worker.update({r, s}, old, left - std::min(left, added), made)) continue;
       if (made.size() > old.size()) added += made.size() - old.size();
-      if (added > left_) refuse();
+      if (added > left_) refuse_more_links(task_);
       replacements.push_back({s, std::move(made)});
     }
     if (replacements.empty()) return;
     std::uint64_t left = left_;
     do {
-      if (added > left) refuse();
+      if (added > left) refuse_more_links(task_);
     } while (!left_.compare_exchange_weak(left, left - added));
     if (differences_ != nullptr) {
       for (const LinkIndex::Replacement& r_s : replacements) {
@@ -213,13 +212,6 @@ class Update {
     tbb::parallel_for(std::size_t{0}, first.size() - 1, [&](std::size_t k) {
       work(sorted[first[k]].receiver, std::span(sources).subspan(first[k], first[k + 1] - first[k]), *workers_.local());
     });
-  }
-
-  [[noreturn]] void refuse() const {
-    throw LimitError(
-        fmt::format("there would be more than {} new links, for which there is no memory; choose a larger threshold or "
-                    "smallest area",
-                    task_.most_links));
   }
 
   const LinkTask& task_;

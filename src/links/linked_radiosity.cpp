@@ -88,11 +88,15 @@ LinkTask LinkedRadiosity::task(LinkScope scope) const {
   task.points_per_edge = options_.points_per_edge;
   task.scope = scope;
   task.any_stale = any_stale_;
-  const std::uint64_t most = options_.mesh.memory_limit / kBytesALink;
-  std::uint64_t links = 0;
-  for (std::uint32_t r = 0; r < links_.roots(); ++r) links += links_.of_receiver(r).size();
-  task.most_links = most - std::min(most, links);
+  task.most_links = bytes_left() / kBytesALink;
   return task;
+}
+
+/// Of the memory, beside the links that there are.
+std::uint64_t LinkedRadiosity::bytes_left() const {
+  std::uint64_t taken = clusters_.links().size_bytes();
+  for (std::uint32_t r = 0; r < links_.roots(); ++r) taken += links_.of_receiver(r).size() * kBytesALink;
+  return options_.mesh.memory_limit - std::min(options_.mesh.memory_limit, taken);
 }
 
 void LinkedRadiosity::gather(LinkUpdate& update) {
@@ -121,15 +125,21 @@ LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
   std::atomic<bool> stopped = false;
   while (true) {
     RunClock watch;
-    LinkTask refinement = task(LinkScope::refinement);
-    refinement.stop = [&] {
+    const auto ends = [&] {
       if (!stopped && stop && stop()) stopped = true;
       return stopped.load();
     };
     ClusterLinks::Refinement of_clusters;
     if (options_.clusters) {
-      of_clusters = clusters_.refine(radiosity_.luminance(), refinement.eps2, refinement.stop);
+      of_clusters = clusters_.refine(radiosity_.luminance(), options_.eps2 * brightest_, ends,
+                                     bytes_left() + clusters_.links().size_bytes());
+    }
+    LinkTask refinement = task(LinkScope::refinement);
+    refinement.stop = ends;
+    if (options_.clusters) {
       refinement.new_pairs = &of_clusters.pairs;
+      refinement.most_links -=
+          std::min<std::uint64_t>(refinement.most_links, of_clusters.pairs.size() * sizeof(PatchPair) / kBytesALink);
     }
     const LinkWork work = update_links(refinement, links_);
     update.work += work;

@@ -123,6 +123,7 @@ class LinkedRadiosity {
   };
 
   LinkTask task(LinkScope scope) const;
+  std::uint64_t bytes_left() const;
   template <class Work>
   LinkUpdate all_or_nothing(const Work& work);
   void change(std::span<const Edit> edits, LinkMethod method, const LinkInterruption& interruption, LinkUpdate& update);

@@ -1,6 +1,7 @@
 #include "src/links/pair_update.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "src/links/push_pull.h"
@@ -101,9 +102,11 @@ double PairUpdate::stake(const PatchPair& pair, std::span<const Link> links) con
   return tree_.node(ends.receiver).area * energy(ends, F);
 }
 
-bool PairUpdate::update(const PatchPair& pair, std::span<const Link> old, std::vector<Link>& links) {
+bool PairUpdate::update(const PatchPair& pair, std::span<const Link> old, std::uint64_t most,
+                        std::vector<Link>& links) {
   const Root &receiver = tree_.root(pair.receiver), &source = tree_.root(pair.source);
   out_.clear();
+  most_ = most > std::numeric_limits<std::uint64_t>::max() - old.size() ? most : old.size() + most;
   changed_ = false;
   if (!receiver.present || !source.present || pair.receiver == pair.source) {
     changed_ = !old.empty();
@@ -282,6 +285,7 @@ void PairUpdate::grow_roots(const Ends& ends) {
 
 /// Appends a new link and, where its energy asks for it, what it is refined to.
 void PairUpdate::grow(const Ends& ends, LinkCode code, const Sight& sight) {
+  if (out_.size() >= most_) refuse_more_links(task_);
   const double F = sight_.form_factor(ends.receiver, ends.source);
   if (!divides(ends, code, energy(ends, F), sight.state == Sight::State::blocked)) {
     ++work_.links_affected;

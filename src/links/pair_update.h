@@ -36,8 +36,9 @@ class PairUpdate {
   /// What they could bring at most, B F A of the receiver in luminance.
   double stake(const PatchPair& pair, std::span<const Link> links) const;
 
-  /// Whether what becomes of the old links differs; then fills `links` with it, in order.
-  bool update(const PatchPair& pair, std::span<const Link> old, std::vector<Link>& links);
+  /// Whether what becomes of the old links differs; then fills `links` with it, in order. Throws LimitError as soon as
+  /// these are more than `most` more.
+  bool update(const PatchPair& pair, std::span<const Link> old, std::uint64_t most, std::vector<Link>& links);
 
   LinkWork work() const;
 
@@ -91,7 +92,8 @@ class PairUpdate {
   LinkSight sight_;
   std::optional<LinkSight> sight_before_;
   std::vector<Link> out_;
-  bool changed_ = false;  ///< whether what is in out_ differs from what was
+  std::uint64_t most_ = 0;  ///< that may be in it
+  bool changed_ = false;    ///< whether what is in out_ differs from what was
   LinkWork work_;
 };
 
