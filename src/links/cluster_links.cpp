@@ -11,6 +11,8 @@
 #include <numbers>
 #include <utility>
 
+#include "src/scene/input_error.h"
+
 namespace exitance {
 namespace {
 
@@ -48,7 +50,7 @@ double ClusterLinks::bound(const ClusterLink& link) const {
 }
 
 ClusterLinks::Refinement ClusterLinks::refine(std::span<const double> luminance, double eps2,
-                                              const std::function<bool()>& stop) {
+                                              const std::function<bool()>& stop, std::uint64_t most_bytes) {
   const std::span<const Cluster> clusters = clusters_.clusters();
   most_.assign(clusters.size(), 0);
   emitted_.assign(clusters.size(), 0);
@@ -78,6 +80,9 @@ ClusterLinks::Refinement ClusterLinks::refine(std::span<const double> luminance,
     });
     next.clear();
     for (std::size_t k = 0; k < links.size(); ++k) {
+      const std::size_t all = standing.size() + made.size() + links.size() + next.size();
+      if (all * sizeof(ClusterLink) + refinement.pairs.size() * sizeof(PatchPair) > most_bytes)
+        throw LimitError("there is no memory for the links of groups of patches; choose a larger threshold");
       if (divides[k] == 0) {
         (first ? standing : made).push_back(links[k]);
         continue;

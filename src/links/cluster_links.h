@@ -16,10 +16,12 @@
 // between up to two patches of P and two of Q, of either child that whose projected area towards the other cluster is
 // the largest, each from one point. As neither the estimate nor the truth exceeds the bound, a link's error is no more
 // than eps2. Where the boxes touch or overlap, no direction means anything, and nothing is brought, which is wrong by
-// no more, either.
+// no more, either. A patch that is an end of such a link is not divided for it, however large it is: it receives the
+// same all over, which the bound covers, too.
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -47,8 +49,10 @@ class ClusterLinks {
     std::vector<PatchPair> pairs;  ///< of patches that remain and face each other, ascending: to get links of their own
   };
   /// Divides links until none could bring more than eps2 (≥ 0) by the luminances of B, by node. In parallel; the same
-  /// for any number of threads. Once `stop` is true nothing is divided any more.
-  Refinement refine(std::span<const double> luminance, double eps2, const std::function<bool()>& stop = {});
+  /// for any number of threads. Once `stop` is true nothing is divided any more. Throws LimitError when links and pairs
+  /// would take more than `most_bytes`; there are no links then.
+  Refinement refine(std::span<const double> luminance, double eps2, const std::function<bool()>& stop = {},
+                    std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
   /// H [W/m²] of every root and band, which stands at [root * width + band], from values by node and band at
   /// [node * width + band]. Linear, and monotone. In parallel; the same bits for any number of threads.

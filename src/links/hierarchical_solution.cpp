@@ -114,6 +114,7 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
   s.patches.B.resize(s.mesh.patches.size() * bands);
   s.patches.H.resize(s.patches.B.size());
   std::vector<double> patch_row_sum(s.mesh.patches.size());
+  const std::vector<double> row_sum = row_sums(links.links(), links.cluster_links(), links.tree());
   // A leaf below an element receives what the element does.
   for (std::size_t e = 0; e < elements.size(); ++e) {
     std::uint32_t leaf = elements[e];
@@ -126,7 +127,7 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
       s.patches.H[std::size_t{p} * bands + b] += share * s.element_H.back();
       s.patches.B[std::size_t{p} * bands + b] += share * s.element_B.back();
     }
-    s.element_row_sum.push_back(links.radiosity().row_sum(leaf));
+    s.element_row_sum.push_back(row_sum[leaf]);
     patch_row_sum[p] += share * s.element_row_sum.back();
   }
   s.patches.iterations = result.update.exchange.iterations;

@@ -7,7 +7,7 @@
 namespace exitance {
 
 /// Where the links from a source patch stand in a block.
-std::pair<std::size_t, std::size_t> LinkIndex::range(const Block& block, std::uint32_t source) const {
+std::pair<std::size_t, std::size_t> LinkIndex::range(const Block& block, std::uint32_t source) {
   const auto at = std::ranges::lower_bound(block.pairs, source, {}, &Pair::source);
   const std::size_t first = at == block.pairs.end() ? block.links.size() : at->first;
   if (at == block.pairs.end() || at->source != source) return {first, first};
@@ -25,59 +25,69 @@ void LinkIndex::grow(std::size_t roots) {
   changes_.resize(roots);
 }
 
+/// Moves the links of pairs that are not replaced to where they stand among `size` links, and puts the others there.
+/// REQUIRES: there is capacity for them. Allocates nothing.
+void LinkIndex::arrange(Block& block, std::vector<Pair>&& pairs, std::size_t size, std::span<const Replacement> put) {
+  std::vector<Link>& links = block.links;
+  std::swap(block.pairs, pairs);  // those before are in `pairs` now
+  const std::size_t old_size = links.size();
+  if (size > old_size) links.resize(size);
+  const auto stays = [&](std::uint32_t source) {
+    return !std::ranges::binary_search(put, source, {}, &Replacement::source);
+  };
+  const auto at = [&](std::size_t k) { return links.begin() + static_cast<std::ptrdiff_t>(k); };
+  // What moves down from the first to the last, then what moves up from the last to the first: nothing is run over.
+  const auto old_last = [&](std::size_t k) { return k + 1 < pairs.size() ? pairs[k + 1].first : old_size; };
+  std::size_t n = 0, k = 0;
+  for (; n < block.pairs.size(); ++n) {
+    const auto [source, first] = block.pairs[n];
+    while (k < pairs.size() && pairs[k].source < source) ++k;
+    if (k < pairs.size() && pairs[k].source == source && first < pairs[k].first && stays(source))
+      std::copy(at(pairs[k].first), at(old_last(k)), at(first));
+  }
+  for (k = pairs.size(); n-- > 0;) {
+    const auto [source, first] = block.pairs[n];
+    while (k > 0 && pairs[k - 1].source > source) --k;
+    if (k == 0 || pairs[k - 1].source != source || first <= pairs[k - 1].first || !stays(source)) continue;
+    const std::size_t last = old_last(k - 1);
+    std::copy_backward(at(pairs[k - 1].first), at(last), at(first + last - pairs[k - 1].first));
+  }
+  links.resize(size);
+  for (const Replacement& r : put) std::ranges::copy(r.links, at(range(block, r.source).first));
+}
+
 void LinkIndex::replace(std::uint32_t receiver, std::span<const Replacement> replacements) {
   Block& block = blocks_[receiver];
-  std::vector<Change>& changes = changes_[receiver];
-  const bool in_place = std::ranges::all_of(replacements, [&](const Replacement& r) {
-    const auto [first, last] = range(block, r.source);
-    return last - first == r.links.size();
-  });
-  if (in_place) {
-    if (keeping_) {
-      std::vector<Change> kept;
-      for (const Replacement& r : replacements) {
-        const std::span<const Link> old = between(receiver, r.source);
-        kept.emplace_back(Replacement{r.source, {old.begin(), old.end()}});
-      }
-      changes.reserve(changes.size() + kept.size());
-      std::ranges::move(kept, std::back_inserter(changes));
-    }
-    for (const Replacement& r : replacements)
-      std::ranges::copy(r.links, block.links.begin() + static_cast<std::ptrdiff_t>(range(block, r.source).first));
-    return;
-  }
-  Block made;
-  std::size_t size = block.links.size();
-  for (const Replacement& r : replacements) {
-    const auto [first, last] = range(block, r.source);
-    size += r.links.size() - (last - first);
-  }
-  made.links.reserve(size);
-  std::size_t pair = 0;
+  std::vector<Pair> pairs;
+  pairs.reserve(block.pairs.size() + replacements.size());
+  std::size_t size = 0, pair = 0;
   const auto keep = [&](std::uint32_t below) {
     for (; pair < block.pairs.size() && block.pairs[pair].source < below; ++pair) {
-      const auto [first, last] = range(block, block.pairs[pair].source);
-      made.pairs.push_back({block.pairs[pair].source, static_cast<std::uint32_t>(made.links.size())});
-      made.links.insert(made.links.end(), block.links.begin() + static_cast<std::ptrdiff_t>(first),
-                        block.links.begin() + static_cast<std::ptrdiff_t>(last));
+      const std::size_t last = pair + 1 < block.pairs.size() ? block.pairs[pair + 1].first : block.links.size();
+      pairs.push_back({block.pairs[pair].source, static_cast<std::uint32_t>(size)});
+      size += last - block.pairs[pair].first;
     }
   };
   for (const Replacement& r : replacements) {
     keep(r.source);
     if (pair < block.pairs.size() && block.pairs[pair].source == r.source) ++pair;
     if (r.links.empty()) continue;
-    made.pairs.push_back({r.source, static_cast<std::uint32_t>(made.links.size())});
-    made.links.insert(made.links.end(), r.links.begin(), r.links.end());
+    pairs.push_back({r.source, static_cast<std::uint32_t>(size)});
+    size += r.links.size();
   }
   keep(0xffffffffu);
-  std::swap(block, made);
-  if (!keeping_) return;
-  try {
-    changes.emplace_back(std::move(made));
-  } catch (...) {
-    std::swap(block, made);  // growing the list left it where it was
-    throw;
+  // What an edit makes more of it is likely to change again.
+  if (size > block.links.capacity()) block.links.reserve(keeping_ ? size + size / 16 : size);
+  if (keeping_) {
+    Replaced kept{{}, block.pairs, block.links.size()};
+    kept.links.reserve(replacements.size());
+    for (const Replacement& r : replacements) {
+      const std::span<const Link> old = std::as_const(*this).between(receiver, r.source);
+      kept.links.push_back({r.source, {old.begin(), old.end()}});
+    }
+    changes_[receiver].emplace_back(std::move(kept));
   }
+  arrange(block, std::move(pairs), size, replacements);
 }
 
 void LinkIndex::mark_stale(std::uint32_t receiver, std::uint32_t source) {
@@ -88,14 +98,11 @@ void LinkIndex::mark_stale(std::uint32_t receiver, std::uint32_t source) {
   stale = true;
 }
 
-std::span<Link> LinkIndex::set_energies_of(std::uint32_t receiver) {
-  std::vector<Link>& links = blocks_[receiver].links;
-  if (keeping_) {
-    std::vector<double> energies;
-    energies.reserve(links.size());
-    for (const Link& link : links) energies.push_back(link.energy);
-    changes_[receiver].emplace_back(std::move(energies));
-  }
+std::span<Link> LinkIndex::energies_of(std::uint32_t receiver, std::uint32_t source) {
+  Block& block = blocks_[receiver];
+  const auto [first, last] = range(block, source);
+  const std::span<Link> links = std::span(block.links).subspan(first, last - first);
+  if (keeping_ && !links.empty()) changes_[receiver].emplace_back(Replacement{source, {links.begin(), links.end()}});
   return links;
 }
 
@@ -114,16 +121,13 @@ void LinkIndex::roll_back() noexcept {
     std::vector<Link>& links = blocks_[r].links;
     for (std::size_t k = changes_[r].size(); k-- > 0;) {  // the last one first
       Change& change = changes_[r][k];
-      if (auto* block = std::get_if<Block>(&change)) {
-        std::swap(blocks_[r], *block);
-      } else if (const auto* replaced = std::get_if<Replacement>(&change)) {
-        std::ranges::copy(replaced->links,
-                          links.begin() + static_cast<std::ptrdiff_t>(range(blocks_[r], replaced->source).first));
-      } else if (const auto* at = std::get_if<std::size_t>(&change)) {
-        links[*at].stale = false;
+      if (auto* replaced = std::get_if<Replaced>(&change)) {
+        arrange(blocks_[r], std::move(replaced->pairs), replaced->size, replaced->links);
+      } else if (const auto* judged = std::get_if<Replacement>(&change)) {
+        std::ranges::copy(judged->links,
+                          links.begin() + static_cast<std::ptrdiff_t>(range(blocks_[r], judged->source).first));
       } else {
-        const auto& energies = std::get<std::vector<double>>(change);
-        for (std::size_t i = 0; i < links.size(); ++i) links[i].energy = energies[i];
+        links[std::get<std::size_t>(change)].stale = false;
       }
     }
   }

@@ -91,8 +91,10 @@ class LinkIndex {
   void replace(std::uint32_t receiver, std::span<const Replacement> replacements);
   /// The first of the links from a source patch is marked stale. REQUIRES: there are some.
   void mark_stale(std::uint32_t receiver, std::uint32_t source);
-  /// All that a patch receives, of which the energies may be set.
-  std::span<Link> set_energies_of(std::uint32_t receiver);
+  /// All that a patch receives, or of it what comes from one patch: the energies may be set. REQUIRES of the first: no
+  /// changes are kept.
+  std::span<Link> energies_of(std::uint32_t receiver) { return blocks_[receiver].links; }
+  std::span<Link> energies_of(std::uint32_t receiver, std::uint32_t source);
 
   /// From here on, what changes is kept, until all of it stays or is undone.
   void keep_changes();
@@ -110,11 +112,17 @@ class LinkIndex {
     std::vector<Link> links;
     std::vector<Pair> pairs;  ///< ascending
   };
+  /// What was in place of links that were replaced, and all pairs as they stood.
+  struct Replaced {
+    std::vector<Replacement> links;
+    std::vector<Pair> pairs;
+    std::size_t size = 0;  ///< of the block
+  };
+  /// The same of energies, and the place of a link that was not stale.
+  using Change = std::variant<Replaced, Replacement, std::size_t>;
 
-  /// What was in place of what changed: a block, links in it, the place of one that was not stale, all energies.
-  using Change = std::variant<Block, Replacement, std::size_t, std::vector<double>>;
-
-  std::pair<std::size_t, std::size_t> range(const Block& block, std::uint32_t source) const;
+  static std::pair<std::size_t, std::size_t> range(const Block& block, std::uint32_t source);
+  static void arrange(Block& block, std::vector<Pair>&& pairs, std::size_t size, std::span<const Replacement> put);
 
   std::vector<Block> blocks_;
   std::vector<std::vector<Change>> changes_;  ///< by receiver

@@ -153,11 +153,14 @@ bool LinkSight::touched(std::uint32_t receiver, std::uint32_t source, const Sigh
   if (parent.state != Sight::State::partial) return false;
   found_.clear();
   std::ranges::set_intersection(items(parent), some, std::back_inserter(found_));
-  if (found_.empty()) return false;
+  return touched(receiver, source, found_);
+}
+
+bool LinkSight::touched(std::uint32_t receiver, std::uint32_t source, std::span<const std::uint32_t> some) {
+  if (some.empty()) return false;
   const Lap lap(work_.seconds_shafts);
   set_shaft(receiver, source);
-  return std::ranges::any_of(found_,
-                             [&](std::uint32_t item) { return shaft_.overlap(item) != Shaft::Overlap::outside; });
+  return std::ranges::any_of(some, [&](std::uint32_t item) { return shaft_.overlap(item) != Shaft::Overlap::outside; });
 }
 
 /// Takes from the last sight what the one above it does not have.

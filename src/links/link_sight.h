@@ -92,6 +92,10 @@ class LinkSight {
                       std::span<const std::uint32_t> items);
   /// Whether any of `some`, ascending, enters the shaft of a link, given what enters that of the link above.
   bool touched(std::uint32_t receiver, std::uint32_t source, const Sight& parent, std::span<const std::uint32_t> some);
+  /// The same, given nothing of the link above.
+  bool touched(std::uint32_t receiver, std::uint32_t source, std::span<const std::uint32_t> some);
+  /// That of a link whose shaft nothing is known to enter.
+  Sight open() const { return {Sight::State::open, items_.size(), 0}; }
   void forget(const Sight& sight) { items_.resize(sight.first); }
   std::span<const std::uint32_t> items(const Sight& sight) const { return {items_.data() + sight.first, sight.count}; }
 

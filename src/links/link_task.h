@@ -41,6 +41,8 @@ struct LinkTask {
   bool any_stale = false;  ///< whether some link may be stale
   /// Of refinement: the pairs that are to get links, ascending and none twice; null: all that have none.
   const std::vector<PatchPair>* new_pairs = nullptr;
+  /// Where no object has moved: the patches, ascending, whose links to others are looked at; null: all.
+  const std::vector<std::uint32_t>* sources = nullptr;
   /// How many links the index may get beyond those that it has.
   std::uint64_t most_links = std::numeric_limits<std::uint64_t>::max();
   /// Asked by any thread before each link that refinement (the scope) would divide: whether none is to be divided any
@@ -58,5 +60,8 @@ struct LinkWork {
 
   LinkWork& operator+=(const LinkWork& other);
 };
+
+/// Throws LimitError: the task would make more links than it may.
+[[noreturn]] void refuse_more_links(const LinkTask& task);
 
 }  // namespace exitance

@@ -1,6 +1,5 @@
 #include "src/links/link_update.h"
 
-#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -13,7 +12,6 @@
 
 #include "src/links/pair_update.h"
 #include "src/links/root_shadows.h"
-#include "src/scene/input_error.h"
 
 namespace exitance {
 namespace {
@@ -134,12 +132,16 @@ class Update {
         for (; next < below; ++next) look(next, {});
       }
     };
-    links_.for_each_source(r, [&](std::uint32_t s, std::span<const Link> links) {
-      look_at_new(s);
-      look(s, links);
-      next = s + 1;
-    });
-    look_at_new(static_cast<std::uint32_t>(task_.tree->roots().size()));
+    if (task_.sources != nullptr) {
+      for (const std::uint32_t s : *task_.sources) look(s, std::as_const(links_).between(r, s));
+    } else {
+      links_.for_each_source(r, [&](std::uint32_t s, std::span<const Link> links) {
+        look_at_new(s);
+        look(s, links);
+        next = s + 1;
+      });
+      look_at_new(static_cast<std::uint32_t>(task_.tree->roots().size()));
+    }
     for (const std::uint32_t s : skipped) links_.mark_stale(r, s);
     skipped_ += skipped.size();
   }
@@ -156,29 +158,43 @@ class Update {
     std::uint64_t added = 0;
     for (const std::uint32_t s : sources) {
       const std::span<const Link> old = std::as_const(links_).between(r, s);
-      if (!worker.update({r, s}, old, made)) continue;
+      const std::uint64_t left = left_;
+      if (!worker.update({r, s}, old, left - std::min(left, added), made)) continue;
       if (made.size() > old.size()) added += made.size() - old.size();
-      if (added > left_) refuse();
-      replacements.push_back({s, made});
+      if (added > left_) refuse_more_links(task_);
+      replacements.push_back({s, std::move(made)});
     }
     if (replacements.empty()) return;
     std::uint64_t left = left_;
     do {
-      if (added > left) refuse();
+      if (added > left) refuse_more_links(task_);
     } while (!left_.compare_exchange_weak(left, left - added));
     if (differences_ != nullptr) {
       for (const LinkIndex::Replacement& r_s : replacements) {
-        receive(std::as_const(links_).between(r, r_s.source), -1);
-        receive(r_s.links, 1);
+        receive_difference(std::as_const(links_).between(r, r_s.source), r_s.links);
       }
     }
     links_.replace(r, replacements);
   }
 
-  void receive(std::span<const Link> links, double sign) {
-    for (const Link& link : links) {
-      if (!link.ghost && link.visibility > 0)
-        differences_->receive(link.destination, sign * link.transfer(), link.source);
+  /// What links between two patches bring more than those before.
+  void receive_difference(std::span<const Link> before, std::span<const Link> now) {
+    const auto receive = [&](const Link& link, double more) {
+      if (more != 0) differences_->receive(link.destination, more, link.source);
+    };
+    const auto brings = [](const Link& link) { return link.ghost ? 0 : link.transfer(); };
+    std::size_t k = 0, n = 0;
+    while (k < before.size() || n < now.size()) {
+      if (n == now.size() || (k < before.size() && before[k].code < now[n].code)) {
+        receive(before[k], -brings(before[k]));
+        ++k;
+      } else if (k == before.size() || now[n].code < before[k].code) {
+        receive(now[n], brings(now[n]));
+        ++n;
+      } else {
+        receive(now[n], brings(now[n]) - brings(before[k]));
+        ++k, ++n;
+      }
     }
   }
 
@@ -196,13 +212,6 @@ class Update {
     tbb::parallel_for(std::size_t{0}, first.size() - 1, [&](std::size_t k) {
       work(sorted[first[k]].receiver, std::span(sources).subspan(first[k], first[k + 1] - first[k]), *workers_.local());
     });
-  }
-
-  [[noreturn]] void refuse() const {
-    throw LimitError(
-        fmt::format("there would be more than {} new links, for which there is no memory; choose a larger threshold or "
-                    "smallest area",
-                    task_.most_links));
   }
 
   const LinkTask& task_;

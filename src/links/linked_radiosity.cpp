@@ -62,14 +62,6 @@ LinkOptions checked(LinkOptions options, const Scene& scene) {
 /// By so much more light links of a node may be worth looking at that were not.
 constexpr double kBrighter = 4;
 
-/// Of any node: one that was dark, too.
-bool is_much_brighter(std::span<const double> Y, std::span<const double> before) {
-  for (std::size_t n = 0; n < before.size(); ++n) {
-    if (Y[n] > kBrighter * before[n]) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 double default_smallest_area(const Scene& scene) {
@@ -96,11 +88,15 @@ LinkTask LinkedRadiosity::task(LinkScope scope) const {
   task.points_per_edge = options_.points_per_edge;
   task.scope = scope;
   task.any_stale = any_stale_;
-  const std::uint64_t most = options_.mesh.memory_limit / kBytesALink;
-  std::uint64_t links = 0;
-  for (std::uint32_t r = 0; r < links_.roots(); ++r) links += links_.of_receiver(r).size();
-  task.most_links = most - std::min(most, links);
+  task.most_links = bytes_left() / kBytesALink;
   return task;
+}
+
+/// Of the memory, beside the links that there are.
+std::uint64_t LinkedRadiosity::bytes_left() const {
+  std::uint64_t taken = clusters_.links().size_bytes();
+  for (std::uint32_t r = 0; r < links_.roots(); ++r) taken += links_.of_receiver(r).size() * kBytesALink;
+  return options_.mesh.memory_limit - std::min(options_.mesh.memory_limit, taken);
 }
 
 void LinkedRadiosity::gather(LinkUpdate& update) {
@@ -129,15 +125,21 @@ LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
   std::atomic<bool> stopped = false;
   while (true) {
     RunClock watch;
-    LinkTask refinement = task(LinkScope::refinement);
-    refinement.stop = [&] {
+    const auto ends = [&] {
       if (!stopped && stop && stop()) stopped = true;
       return stopped.load();
     };
     ClusterLinks::Refinement of_clusters;
     if (options_.clusters) {
-      of_clusters = clusters_.refine(radiosity_.luminance(), refinement.eps2, refinement.stop);
+      of_clusters = clusters_.refine(radiosity_.luminance(), options_.eps2 * brightest_, ends,
+                                     bytes_left() + clusters_.links().size_bytes());
+    }
+    LinkTask refinement = task(LinkScope::refinement);
+    refinement.stop = ends;
+    if (options_.clusters) {
       refinement.new_pairs = &of_clusters.pairs;
+      refinement.most_links -=
+          std::min<std::uint64_t>(refinement.most_links, of_clusters.pairs.size() * sizeof(PatchPair) / kBytesALink);
     }
     const LinkWork work = update_links(refinement, links_);
     update.work += work;
@@ -153,10 +155,38 @@ LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
     update.seconds_exchange += watch.lap();
   }
   gather(update);
-  set_energies(links_, tree_, radiosity_.luminance());
+  judge_all();
   update.seconds = whole.seconds();
   update.cpu_seconds = whole.cpu_seconds();
   return update;
+}
+
+void LinkedRadiosity::judge_all() {
+  const std::span<const double> Y = radiosity_.luminance();
+  set_energies(links_, tree_, Y);
+  judged_.assign(Y.begin(), Y.end());  // none is negative
+}
+
+/// Sets the energies of links from patches of which some node is much brighter than when they were found, one that was
+/// dark, too, and bright enough for B_eps. Returns these patches, ascending.
+std::vector<std::uint32_t> LinkedRadiosity::judge_what_is_brighter() {
+  const std::span<const double> Y = radiosity_.luminance();
+  const double least = options_.B_eps * brightest_;
+  judged_.resize(Y.size());
+  std::vector<std::uint32_t> brighter;
+  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
+    const Root& root = tree_.root(r);
+    bool found = false;
+    for (std::size_t n = root.node_first, last = n + root.node_count; n < last; ++n) {
+      found = found || (Y[n] > kBrighter * judged_[n] && Y[n] > least);
+      judged_[n] = std::clamp(Y[n], 0.0, judged_[n]);
+    }
+    if (!found) continue;
+    brighter.push_back(r);
+    for (std::size_t n = root.node_first, last = n + root.node_count; n < last; ++n) judged_[n] = std::max(0.0, Y[n]);
+  }
+  set_energies(links_, tree_, Y, brighter);
+  return brighter;
 }
 
 /// work(update): what throws leaves everything as it was.
@@ -168,6 +198,7 @@ LinkUpdate LinkedRadiosity::all_or_nothing(const Work& work) {
   std::optional<Pending> pending = pending_;
   const std::shared_ptr<const Obstacles> obstacles = obstacles_;
   const bool any_stale = any_stale_;
+  std::vector<double> judged = judged_;
   LinkUpdate update;
   links_.keep_changes();
   try {
@@ -180,6 +211,7 @@ LinkUpdate LinkedRadiosity::all_or_nothing(const Work& work) {
     pending_ = std::move(pending);
     obstacles_ = obstacles;
     any_stale_ = any_stale;
+    judged_ = std::move(judged);
     throw;
   }
   links_.commit();
@@ -193,7 +225,7 @@ LinkUpdate LinkedRadiosity::update(std::span<const Edit> edits, LinkMethod metho
   RunClock whole;
   LinkUpdate update = all_or_nothing([&](LinkUpdate& made) { change(edits, method, interruption, made); });
   RunClock watch;
-  if (method == LinkMethod::direct || method == LinkMethod::hvt) set_energies(links_, tree_, radiosity_.luminance());
+  if (method == LinkMethod::direct || method == LinkMethod::hvt) judge_all();
   update.seconds_exchange += watch.lap();
   update.seconds = whole.seconds();
   update.cpu_seconds = whole.cpu_seconds();
@@ -206,7 +238,7 @@ LinkUpdate LinkedRadiosity::work_off(const LinkInterruption& interruption) {
   const LinkMethod method = pending_->method;
   LinkUpdate update = all_or_nothing([&](LinkUpdate& made) { follow(*pending_, interruption, made); });
   RunClock watch;
-  if (method != LinkMethod::hvt_peu) set_energies(links_, tree_, radiosity_.luminance());
+  if (method != LinkMethod::hvt_peu) judge_all();
   update.seconds_exchange += watch.lap();
   update.seconds = whole.seconds();
   update.cpu_seconds = whole.cpu_seconds();
@@ -230,27 +262,24 @@ void LinkedRadiosity::follow(Pending pending, const LinkInterruption& interrupti
     pending.stage = Stage::new_light;
   update.seconds_links += watch.lap();
   if (shoots) {
-    const std::span<const double> Y = radiosity_.luminance();
-    const std::vector<double> before(Y.begin(), Y.end());
     shoot(update);
-    pending.new_light = pending.new_light || is_much_brighter(radiosity_.luminance(), before);
   } else {
     gather(update);
   }
   bool done = pending.stage == Stage::new_light;
-  if (done && pending.new_light) {
-    // What has come, or was covered, had no light before the exchange.
+  // What has come, or was covered, had no light before the exchange. By that which it has now links may be worth
+  // looking at that were not before.
+  while (done && shoots) {
+    std::vector<std::uint32_t> brighter;
     if (pending.pairs.empty()) {
-      set_energies(links_, tree_, radiosity_.luminance());
+      brighter = judge_what_is_brighter();
+      if (brighter.empty() || !any_stale_) break;
       pending.luminance.clear();
     }
-    // By that light links may be worth looking at that were not before.
-    if (any_stale_) {
-      watch.lap();
-      done = look_at_pairs(pending, LinkScope::significant, interruption, update);
-      update.seconds_links += watch.lap();
-      shoot(update);
-    }
+    watch.lap();
+    done = look_at_pairs(pending, LinkScope::significant, interruption, update, &brighter);
+    update.seconds_links += watch.lap();
+    shoot(update);
   }
   update.pairs_left = pending.pairs.size();
   if (done) {
@@ -260,9 +289,10 @@ void LinkedRadiosity::follow(Pending pending, const LinkInterruption& interrupti
   }
 }
 
-/// Works on the pairs of a stage, all that it concerns where there are none yet. Whether none is left.
+/// Works on the pairs of a stage, all that it concerns where there are none yet, or those of them that come from
+/// `sources`. Whether none is left.
 bool LinkedRadiosity::look_at_pairs(Pending& pending, LinkScope scope, const LinkInterruption& interruption,
-                                    LinkUpdate& update) {
+                                    LinkUpdate& update, const std::vector<std::uint32_t>* sources) {
   const bool refines = scope == LinkScope::materials;
   if (!(refines ? any(pending.relit) : any(pending.moved) || any_stale_)) return true;
   LinkTask how = task(scope);
@@ -271,6 +301,7 @@ bool LinkedRadiosity::look_at_pairs(Pending& pending, LinkScope scope, const Lin
   how.relit = pending.relit;
   how.stop = interruption.stop;
   how.order = interruption.order;
+  how.sources = sources;
   const bool begins = pending.pairs.empty();
   if (!pending.luminance.empty()) how.luminance = pending.luminance;
   if (!begins) how.any_stale = pending.any_stale;
@@ -280,7 +311,7 @@ bool LinkedRadiosity::look_at_pairs(Pending& pending, LinkScope scope, const Lin
   const bool done = pending.pairs.empty();
   pending.skipped = pending.skipped || work.skipped > 0;
   // What is left may be stale itself, and so may what is not refined.
-  any_stale_ = pending.skipped || (any_stale_ && (refines || !done));
+  any_stale_ = pending.skipped || (any_stale_ && (refines || sources != nullptr || !done));
   if (done) {
     pending.skipped = false;
   } else {
@@ -321,11 +352,9 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
   RunClock watch;
   const std::size_t objects = scene_.scene().objects.size();
   std::vector<std::uint8_t> moved(objects), relit(objects), relit_before(objects);
-  bool new_light = false;
   if (pending_) {
     mark_pending(links_);
     any_stale_ = any_stale_ || pending_->stage != Stage::materials;
-    new_light = pending_->new_light;
     if (pending_->stage != Stage::new_light) relit_before = pending_->relit;
     pending_.reset();
   }
@@ -362,7 +391,7 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
     return;
   }
   // What links may bring follows at once: thresholds are asked of it.
-  if (any(relit) || new_light) set_energies(links_, tree_, radiosity_.luminance());
+  if (method == LinkMethod::hvt_peu) judge_what_is_brighter();
   update.seconds_scene = watch.lap();
 
   for (std::size_t object = 0; object < objects; ++object) relit[object] |= relit_before[object];
@@ -371,8 +400,6 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
   all.before = before;
   all.moved = moved;
   all.relit = relit;
-  const auto brings = [](const Edit& e) { return e.operation == Operation::add || e.operation == Operation::reshape; };
-  all.new_light = method == LinkMethod::hvt_peu && (new_light || any(relit) || std::ranges::any_of(edits, brings));
   follow(std::move(all), interruption, update);
 }
 

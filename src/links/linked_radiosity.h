@@ -108,7 +108,7 @@ class LinkedRadiosity {
   enum class Stage : std::uint8_t {
     sight,      ///< what objects that moved affect, and what is stale
     materials,  ///< what brings more or less light than before
-    new_light   ///< once it was exchanged: what is stale and worth looking at by now
+    new_light   ///< once it was exchanged: what is stale and comes from patches that are much brighter now
   };
   /// What an interrupted update left, and what it goes by.
   struct Pending {
@@ -120,15 +120,18 @@ class LinkedRadiosity {
     std::vector<double> luminance;           ///< by which links are refined
     bool any_stale = false;                  ///< before this stage
     bool skipped = false;                    ///< whether this stage has left something stale
-    bool new_light = false;                  ///< of PEU: whether the edits bring light that links knew nothing of
   };
 
   LinkTask task(LinkScope scope) const;
+  std::uint64_t bytes_left() const;
   template <class Work>
   LinkUpdate all_or_nothing(const Work& work);
   void change(std::span<const Edit> edits, LinkMethod method, const LinkInterruption& interruption, LinkUpdate& update);
   void follow(Pending pending, const LinkInterruption& interruption, LinkUpdate& update);
-  bool look_at_pairs(Pending& pending, LinkScope scope, const LinkInterruption& interruption, LinkUpdate& update);
+  bool look_at_pairs(Pending& pending, LinkScope scope, const LinkInterruption& interruption, LinkUpdate& update,
+                     const std::vector<std::uint32_t>* sources = nullptr);
+  void judge_all();
+  std::vector<std::uint32_t> judge_what_is_brighter();
   void mark_pending(LinkIndex& links) const;
   void gather(LinkUpdate& update);
   void shoot(LinkUpdate& update);
@@ -140,7 +143,9 @@ class LinkedRadiosity {
   NodeRadiosity radiosity_;
   LinkIndex links_;
   ClusterLinks clusters_;
-  double brightest_ = 0;    ///< luminance of E
+  double brightest_ = 0;  ///< luminance of E
+  /// By node: at most the luminance by which the energies of links from it were found, and at most what it has.
+  std::vector<double> judged_;
   bool any_stale_ = false;  ///< whether some link may be
   std::optional<Pending> pending_;
 };

@@ -1,6 +1,7 @@
 #include "src/links/pair_update.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "src/links/push_pull.h"
@@ -101,9 +102,11 @@ double PairUpdate::stake(const PatchPair& pair, std::span<const Link> links) con
   return tree_.node(ends.receiver).area * energy(ends, F);
 }
 
-bool PairUpdate::update(const PatchPair& pair, std::span<const Link> old, std::vector<Link>& links) {
+bool PairUpdate::update(const PatchPair& pair, std::span<const Link> old, std::uint64_t most,
+                        std::vector<Link>& links) {
   const Root &receiver = tree_.root(pair.receiver), &source = tree_.root(pair.source);
   out_.clear();
+  most_ = most > std::numeric_limits<std::uint64_t>::max() - old.size() ? most : old.size() + most;
   changed_ = false;
   if (!receiver.present || !source.present || pair.receiver == pair.source) {
     changed_ = !old.empty();
@@ -111,32 +114,41 @@ bool PairUpdate::update(const PatchPair& pair, std::span<const Link> old, std::v
     grow_roots({receiver.node_first, source.node_first});
     changed_ = true;
   } else {
-    Above ends;
-    ends.renewed = !only_refines() && (has_moved(receiver) || has_moved(source));
-    visit(old, ends, true);
+    visit(old, nullptr, !only_refines() && (has_moved(receiver) || has_moved(source)));
   }
   if (changed_) links.assign(out_.begin(), out_.end());
   return changed_;
 }
 
-/// Appends to out_ what becomes of a link and its descendants.
-void PairUpdate::visit(std::span<const Link> old, const Above& above, bool root) {
-  const Link& link = old.front();
-  const Ends ends{link.destination, link.source};
-  Above here = above;
-  here.renewed = above.renewed || link.stale;
-  here.before.reset();
-  here.sight = {};
-  bool known = false;  // here.sight is; else nothing enters, or nothing needs it
+/// Of a link in the scene as it is. What is asked first is forgotten last: links above before those below.
+const Sight& PairUpdate::sight_of(Above& link) {
+  if (!link.now) {
+    const auto [to, from] = link.ends;
+    link.now = link.above == nullptr ? sight_.between_roots(to, from)
+               : alone()             ? sight_.between_alone(to, from, sight_of(*link.above))
+                                     : sight_.between(to, from, sight_of(*link.above));
+  }
+  return *link.now;
+}
 
-  const auto find_sight = [&] {
-    here.sight = root      ? sight_.between_roots(ends.receiver, ends.source)
-                 : alone() ? sight_.between_alone(ends.receiver, ends.source, above.sight)
-                           : sight_.between(ends.receiver, ends.source, above.sight);
-    known = true;
-  };
+/// Whether what moved enters the shaft of a link now. What it does not enter of the link above counts where that is not
+/// known.
+bool PairUpdate::is_touched(const Above& link) {
+  const auto [to, from] = link.ends;
+  return link.above != nullptr && link.above->now ? sight_.touched(to, from, *link.above->now, changed_now_.items)
+                                                  : sight_.touched(to, from, changed_now_.items);
+}
+
+/// Appends to out_ what becomes of a link and its descendants. Of significant ones only, what enters a shaft is sought
+/// when a link needs it whose value is found anew, of this link and of those above it.
+void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
+  const Link& link = old.front();
+  const bool root = above == nullptr;
+  Above here{above, {link.destination, link.source}, renewed || link.stale, !root && above->affected, {}, {}};
+  const Ends& ends = here.ends;
+
   const auto forget = [&] {
-    if (known) sight_.forget(here.sight);
+    if (here.now) sight_.forget(*here.now);
     if (here.before) sight_before_->forget(*here.before);
   };
   const auto leave_stale = [&] {
@@ -150,55 +162,60 @@ void PairUpdate::visit(std::span<const Link> old, const Above& above, bool root)
   double F = link.form_factor;
   bool evaluate = false, may_change = false;  // its value; whether it is refined
   if (only_refines()) {
-    if (!wants_change(old)) return above.renewed ? leave_stale() : copy(old);
+    if (!wants_change(old)) return renewed ? leave_stale() : copy(old);
     if (here.renewed) {  // what it was left as tells nothing
       F = sight_.form_factor(ends.receiver, ends.source);
       evaluate = changed_ = true;
     }
-    if (!link.open || here.renewed) find_sight();
+    if (link.open && !here.renewed) here.now = sight_.open();
     may_change = true;
   } else if (here.renewed) {
-    if (only_significant() && !above.renewed && link.energy < task_.B_eps) return leave_stale();
+    if (only_significant() && !renewed && link.energy < task_.B_eps) return leave_stale();
     changed_ = true;
     if (!face_each_other(ends)) return;
+    const double Y = task_.luminance[ends.source];
+    if (only_significant() && !link.ghost && Y * link.transfer() < task_.B_eps) {
+      const Node &to = tree_.node(ends.receiver), &from = tree_.node(ends.source);
+      if (Y * most_form_factor(to, from, task_.now->soup()) < task_.B_eps) return leave_stale();
+    }
     F = sight_.form_factor(ends.receiver, ends.source);
-    const double most = std::max(energy(ends, F), task_.luminance[ends.source] * link.transfer());
+    const double most = std::max(energy(ends, F), Y * link.transfer());
     if (only_significant() && !link.ghost && most < task_.B_eps) return leave_stale();
-    find_sight();
     here.affected = evaluate = true;
     may_change = task_.scope != LinkScope::values;
   } else {
     if (only_significant() && link.energy < task_.B_eps) return leave_stale();
-    const bool blocked_above = !root && above.sight.state == Sight::State::blocked;
     const bool has_changed = task_.before != nullptr;
-    if (has_changed && !blocked_above) {
+    const bool has_stale = task_.any_stale && std::ranges::any_of(old, [](const Link& l) { return l.stale; });
+    if (!has_changed && !tests_all() && !has_stale) return copy(old);
+    if (has_changed && !(!root && above->blocked())) {
       here.before =
           root || !alone()
               ? (root ? sight_before_->between_roots(ends.receiver, ends.source, changed_before_->items)
-                      : sight_before_->between(ends.receiver, ends.source, *above.before))
-              : sight_before_->between_alone(ends.receiver, ends.source, *above.before, changed_before_->items);
+                      : sight_before_->between(ends.receiver, ends.source, *above->before))
+              : sight_before_->between_alone(ends.receiver, ends.source, *above->before, changed_before_->items);
       if (here.before->state == Sight::State::blocked) here.before->state = Sight::State::partial;
     }
     const bool touched_before = here.before && here.before->count > 0;
-    const bool has_stale = task_.any_stale && std::ranges::any_of(old, [](const Link& l) { return l.stale; });
+    const bool judges = only_significant() && !link.ghost;
     bool touched = false;
-    if (has_changed && !tests_all() && !blocked_above && !touched_before && !has_stale) {
+    if (has_changed && !tests_all() && here.before && !has_stale && (judges || !touched_before)) {
       // Most shafts are not entered by what moved: that alone is asked first.
-      if (root) {
-        const Sight of_changed = sight_.between_roots(ends.receiver, ends.source, changed_now_.items);
-        touched = of_changed.count > 0;
-        sight_.forget(of_changed);
-      } else {
-        touched = sight_.touched(ends.receiver, ends.source, above.sight, changed_now_.items);
-      }
-      if (!touched) {
+      touched = is_touched(here);
+      if (!touched && !touched_before) {
         forget();
         return copy(old);
       }
     }
-    find_sight();
-    touched = has_changed && touches_changed(here.sight);
-    here.affected = blocked_above ? above.affected : touched_before || touched;
+    if (judges && has_changed && (here.before || above->affected)) {
+      // What moved in can only hide, what moved away only reveal.
+      const double v = link.visibility;
+      const double most = std::max(touched || !here.before ? v : 0, touched_before ? 1 - v : 0);
+      if (most * energy(ends, F) < task_.B_eps) return leave_stale();
+    }
+    const bool asks = !only_significant() || !link.ghost || has_stale;
+    if (asks) touched = has_changed && touches_changed(sight_of(here));
+    here.affected = !root && above->blocked() ? above->affected : touched_before || touched;
     may_change = task_.scope != LinkScope::values && here.affected;
     evaluate = tests_all() || here.affected;
     if (!evaluate && !has_stale) {
@@ -206,31 +223,27 @@ void PairUpdate::visit(std::span<const Link> old, const Above& above, bool root)
       return copy(old);
     }
     if (tests_all()) F = sight_.form_factor(ends.receiver, ends.source);
-    if (only_significant() && evaluate && !link.ghost) {
-      // What moved in can only hide, what moved away only reveal.
-      const double v = link.visibility;
-      const double most = std::max(touched || blocked_above ? v : 0, touched_before ? 1 - v : 0);
-      if (most * energy(ends, F) < task_.B_eps) return leave_stale();
-    }
     changed_ = changed_ || evaluate;
   }
 
-  const bool blocked = known ? here.sight.state == Sight::State::blocked : link.blocked;
   if (!link.ghost) {
+    const bool blocked = evaluate || may_change ? sight_of(here).state == Sight::State::blocked : link.blocked;
     if (may_change && divides(ends, link.code, energy(ends, F), blocked)) {
       changed_ = true;
-      grow(ends, link.code, here.sight);
+      grow(ends, link.code, sight_of(here));
     } else if (evaluate) {
       work_.links_affected += here.affected || here.renewed;
-      add_leaf(ends, link.code, F, here.sight);
+      add_leaf(ends, link.code, F, sight_of(here));
     } else {
       copy(old);
     }
     return forget();
   }
 
+  if (!only_significant()) sight_of(here);
   const std::size_t at = out_.size();
-  out_.push_back(evaluate ? ghost(ends, link.code, F, here.sight) : link);
+  const std::uint64_t skipped = work_.skipped;
+  out_.push_back(link);
   const End end = *divided_end(ends, link.code);
   std::size_t next = 1;
   bool all_leaves = true;
@@ -241,18 +254,22 @@ void PairUpdate::visit(std::span<const Link> old, const Above& above, bool root)
     if (next < old.size() && old[next].code == code) {
       const std::span<const Link> of_child = old.subspan(next, old[next].next);
       next += of_child.size();
-      visit(of_child, here, false);
+      visit(of_child, &here, here.renewed);
     } else if (here.renewed && face_each_other(to)) {
-      const Sight sight = sight_.between(to.receiver, to.source, here.sight);
+      const Sight sight = sight_.between(to.receiver, to.source, sight_of(here));
       grow(to, code, sight);
       sight_.forget(sight);
     }
     if (out_.size() > child_at) all_leaves = all_leaves && !out_[child_at].ghost;
   }
+  if (evaluate) {
+    const bool known = here.now || work_.skipped == skipped;  // else something may enter
+    out_[at] = ghost(ends, link.code, F, known ? sight_of(here) : Sight{Sight::State::partial, 0, 0});
+  }
   close(at);
   if (may_change && task_.scope != LinkScope::refinement && all_leaves && energy(ends, F) < task_.eps1) {
     out_.resize(at);
-    add_leaf(ends, link.code, F, here.sight);
+    add_leaf(ends, link.code, F, sight_of(here));
     changed_ = true;
     ++work_.unrefined;
   }
@@ -268,6 +285,7 @@ void PairUpdate::grow_roots(const Ends& ends) {
 
 /// Appends a new link and, where its energy asks for it, what it is refined to.
 void PairUpdate::grow(const Ends& ends, LinkCode code, const Sight& sight) {
+  if (out_.size() >= most_) refuse_more_links(task_);
   const double F = sight_.form_factor(ends.receiver, ends.source);
   if (!divides(ends, code, energy(ends, F), sight.state == Sight::State::blocked)) {
     ++work_.links_affected;

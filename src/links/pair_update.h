@@ -36,8 +36,9 @@ class PairUpdate {
   /// What they could bring at most, B F A of the receiver in luminance.
   double stake(const PatchPair& pair, std::span<const Link> links) const;
 
-  /// Whether what becomes of the old links differs; then fills `links` with it, in order.
-  bool update(const PatchPair& pair, std::span<const Link> old, std::vector<Link>& links);
+  /// Whether what becomes of the old links differs; then fills `links` with it, in order. Throws LimitError as soon as
+  /// these are more than `most` more.
+  bool update(const PatchPair& pair, std::span<const Link> old, std::uint64_t most, std::vector<Link>& links);
 
   LinkWork work() const;
 
@@ -47,10 +48,14 @@ class PairUpdate {
   };
   /// What is known of a link when its descendants are looked at.
   struct Above {
+    Above* above = nullptr;  ///< null: of whole patches
+    Ends ends;
     bool renewed = false;         ///< an end has moved, or it was left stale: everything about it is new
     bool affected = false;        ///< by the old or the new place of an object
     std::optional<Sight> before;  ///< in the scene as it was, among the objects that moved, where that was asked
-    Sight sight;                  ///< in the scene as it is
+    std::optional<Sight> now;     ///< in the scene as it is, where that was asked
+
+    bool blocked() const { return now && now->state == Sight::State::blocked; }
   };
 
   // Of a scope.
@@ -68,8 +73,10 @@ class PairUpdate {
   bool divides(const Ends& ends, LinkCode code, double energy, bool blocked) const;
   bool wants_change(std::span<const Link> links) const;
   bool touches_changed(const Sight& sight) const;
+  const Sight& sight_of(Above& link);
+  bool is_touched(const Above& link);
 
-  void visit(std::span<const Link> old, const Above& above, bool root);
+  void visit(std::span<const Link> old, Above* above, bool renewed);
   void grow_roots(const Ends& ends);
   void grow(const Ends& ends, LinkCode code, const Sight& sight);
   Link ghost(const Ends& ends, LinkCode code, double form_factor, const Sight& sight) const;
@@ -85,7 +92,8 @@ class PairUpdate {
   LinkSight sight_;
   std::optional<LinkSight> sight_before_;
   std::vector<Link> out_;
-  bool changed_ = false;  ///< whether what is in out_ differs from what was
+  std::uint64_t most_ = 0;  ///< that may be in it
+  bool changed_ = false;    ///< whether what is in out_ differs from what was
   LinkWork work_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -222,6 +223,28 @@ bool face_each_other(const Node& a, const Node& b, const PolygonSoup& soup) {
                                [&](const Vec3& v) { return dot(plane.normal, v - plane.origin) > least * length; });
   };
   return some_in_front(a, b) && some_in_front(b, a);
+}
+
+Ball ball_around(const Node& node) {
+  Ball ball;
+  for (const Vec3& v : node.loop()) ball.centre = ball.centre + (1.0 / node.corners) * v;
+  double square = 0;
+  for (const Vec3& v : node.loop()) square = std::max(square, dot(v - ball.centre, v - ball.centre));
+  ball.radius = (1 + 1e-9) * std::sqrt(square);
+  return ball;
+}
+
+double most_form_factor(const Node& receiver, const Node& source, const PolygonSoup& soup) {
+  const Ball to = ball_around(receiver), from = ball_around(source);
+  const Vec3 d = from.centre - to.centre;
+  const double both = to.radius + from.radius, least = norm(d) - both;
+  if (!(least > 0)) return 1;
+  const auto cosine = [&](const Node& node, double sign) {
+    const Vec3& normal = soup.facets()[node.facet].plane.normal;
+    return std::clamp((sign * dot(normal, d) / norm(normal) + both) / least, 0.0, 1.0);
+  };
+  const double F = source.area * cosine(receiver, 1) * cosine(source, -1) / (std::numbers::pi * least * least);
+  return std::min(1.0, (1 + 1e-9) * F);
 }
 
 ShaftEnd shaft_end(const Node& node) {

@@ -96,6 +96,17 @@ void node_points(const Node& node, unsigned per_edge, std::vector<NodePoint>& po
 /// exchange nothing that counts and have no link. Depends on the two nodes only.
 bool face_each_other(const Node& a, const Node& b, const PolygonSoup& soup);
 
+/// Around a node, about its corners' mean.
+struct Ball {
+  Vec3 centre;
+  double radius = 0;
+};
+Ball ball_around(const Node& node);
+
+/// At least the form factor from any point of the receiver to the source: by its area, the least distance of the balls
+/// around both and the largest cosines at that; 1 where the balls meet.
+double most_form_factor(const Node& receiver, const Node& source, const PolygonSoup& soup);
+
 /// A node as one end of a shaft, or as a source; the node must outlive it.
 ShaftEnd shaft_end(const Node& node);
 Source source_of(const Node& node);

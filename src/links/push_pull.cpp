@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <type_traits>
 #include <utility>
 
 #include "src/solve/radiosity_system.h"
@@ -18,6 +19,32 @@ namespace {
 constexpr double kShootTogether = 0.1;
 /// Of the bound: when a sweep adds little enough to w, and more than what rounding does to it, relative.
 constexpr double kReflected = 0.1, kSlack = 1e-12;
+
+/// A sum of doubles, and what rounding took from it (Knuth): as if summed with twice the digits, and rounded once.
+struct Sum {
+  double sum = 0, lost = 0;
+
+  void add(double x) {
+    const double all = sum + x, part = all - sum;
+    lost += (sum - (all - part)) + (x - part);
+    sum = all;
+  }
+  void add(const Sum& other) {
+    add(other.sum);
+    lost += other.lost;
+  }
+  double value() const { return sum + lost; }
+};
+
+/// do_for(bands), of which the compiler knows what is most frequent.
+template <class Do>
+void with_bands(std::size_t bands, const Do& do_for) {
+  if (bands == 3) {
+    do_for(std::integral_constant<std::size_t, 3>());
+  } else {
+    do_for(bands);
+  }
+}
 
 template <class Work>
 void for_each_root(const PatchTree& tree, const Work& work) {
@@ -52,7 +79,7 @@ NodeRadiosity::NodeRadiosity(const PatchTree& tree, const EditedScene& scene)
 void NodeRadiosity::fit_arrays() {
   const std::size_t nodes = tree_->nodes().size(), roots = tree_->roots().size();
   for (auto* values : {&B_, &next_, &H_, &received_, &unshot_}) values->resize(nodes * bands_);
-  for (auto* values : {&Y_, &row_sum_, &w_, &next_w_}) values->resize(nodes);
+  for (auto* values : {&Y_, &w_, &next_w_}) values->resize(nodes);
   for (auto* values : {&rho_, &E_}) values->resize(roots * bands_);
   has_received_.resize(roots);
   there_.resize(roots);
@@ -162,32 +189,30 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& c
   for (const Root& root : tree_->roots())
     std::fill_n(w_.begin() + root.node_first, root.node_count, root.present ? 1.0 : 0.0);
   bool bounding = true;  // whether w is still sought
-  // By root: what clusters bring of B, of w, and of 1.
-  std::vector<double> of_clusters, w_of_clusters, F_of_clusters;
-  if (!clusters.empty()) clusters.gather(std::vector<double>(tree_->nodes().size(), 1), 1, F_of_clusters);
+  // By root: what clusters bring of B and of w.
+  std::vector<double> of_clusters, w_of_clusters;
 
   const auto sweep = [&](std::uint32_t r) {
     const Root& root = tree_->root(r);
-    const std::size_t first = root.node_first, count = root.node_count, width = bands_ + 2;
+    const std::size_t first = root.node_first, count = root.node_count, width = bands_ + 1;
     const auto rho = std::span(rho_).subspan(std::size_t{r} * bands_, bands_);
     const double largest_rho = *std::ranges::max_element(rho);
-    // Sums keep eleven more bits, so that what they lose does not count.
-    thread_local std::vector<long double> sums;
-    sums.assign(count * width, 0);
-    for (const Link& link : links.of_receiver(r)) {
-      if (link.ghost) continue;
-      const double F = link.transfer();
-      if (F == 0) continue;
-      long double* sum = sums.data() + (link.destination - first) * width;
-      const double* B = B_.data() + std::size_t{link.source} * bands_;
-      for (std::uint32_t b = 0; b < bands_; ++b) sum[b] += static_cast<long double>(F) * B[b];
-      sum[bands_] += F;
-      if (bounding) sum[bands_ + 1] += static_cast<long double>(F) * w_[link.source];
-    }
+    thread_local std::vector<Sum> sums;  // of each band, and of w
+    sums.assign(count * width, {});
+    with_bands(bands_, [&](auto bands) {
+      for (const Link& link : links.of_receiver(r)) {
+        if (link.ghost) continue;
+        const double F = link.transfer();
+        if (F == 0) continue;
+        Sum* sum = sums.data() + (link.destination - first) * (bands + 1);
+        const double* B = B_.data() + std::size_t{link.source} * bands;
+        for (std::size_t b = 0; b < bands; ++b) sum[b].add(F * B[b]);
+        if (bounding) sum[bands].add(F * w_[link.source]);
+      }
+    });
     if (!clusters.empty()) {
-      for (std::uint32_t b = 0; b < bands_; ++b) sums[b] += of_clusters[std::size_t{r} * bands_ + b];
-      sums[bands_] += F_of_clusters[r];
-      if (bounding) sums[bands_ + 1] += w_of_clusters[r];
+      for (std::uint32_t b = 0; b < bands_; ++b) sums[b].add(of_clusters[std::size_t{r} * bands_ + b]);
+      if (bounding) sums[bands_].add(w_of_clusters[r]);
     }
     OfRoot& found = of_root[r];
     std::ranges::fill(found.change, 0);
@@ -195,19 +220,18 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& c
     if (bounding) found.reflected = found.w = 0;
     for (std::size_t n = first; n < first + count; ++n) {
       const Node& node = tree_->nodes()[n];
-      const long double* sum = sums.data() + (n - first) * width;
+      const Sum* sum = sums.data() + (n - first) * width;
       for (std::size_t k = 0; node.has_children() && k < 4; ++k) {
-        for (std::size_t b = 0; b < width; ++b) sums[(node.first_child + k - first) * width + b] += sum[b];
+        for (std::size_t b = 0; b < width; ++b) sums[(node.first_child + k - first) * width + b].add(sum[b]);
       }
-      row_sum_[n] = static_cast<double>(sum[bands_]);
       if (bounding && !node.has_children()) {
-        next_w_[n] = 1 + largest_rho * static_cast<double>(sum[bands_ + 1]);
+        next_w_[n] = 1 + largest_rho * sum[bands_].value();
         found.reflected = std::max(found.reflected, next_w_[n] - w_[n]);
         found.w = std::max(found.w, w_[n]);
       }
       for (std::size_t b = 0; b < bands_; ++b) {
         const std::size_t i = n * bands_ + b;
-        H_[i] = static_cast<double>(sum[b]);
+        H_[i] = sum[b].value();
         if (node.has_children()) continue;
         next_[i] = E_[std::size_t{r} * bands_ + b] + rho[b] * H_[i];
         found.change[b] = std::max(found.change[b], std::fabs(next_[i] - B_[i]));
@@ -332,13 +356,15 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
     for_each_root(*tree_, [&](std::uint32_t r) {
       links.for_each_source(r, [&](std::uint32_t source, std::span<const Link> of_source) {
         if (shoots[source] == 0) return;
-        for (const Link& link : of_source) {
-          if (link.ghost || link.visibility == 0) continue;
-          const double F = link.transfer();
-          for (std::uint32_t b = 0; b < bands_; ++b)
-            received_[std::size_t{link.destination} * bands_ + b] += F * unshot_[std::size_t{link.source} * bands_ + b];
-          has_received_[r] = 1;
-        }
+        has_received_[r] = 1;
+        with_bands(bands_, [&](auto bands) {
+          for (const Link& link : of_source) {
+            const double F = link.ghost ? 0 : link.transfer();
+            const double* from = unshot_.data() + std::size_t{link.source} * bands;
+            double* to = received_.data() + std::size_t{link.destination} * bands;
+            for (std::size_t b = 0; b < bands; ++b) to[b] += F * from[b];
+          }
+        });
       });
     });
     for_each_root(*tree_, [&](std::uint32_t r) {
@@ -354,20 +380,53 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
   return most;
 }
 
-void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance) {
+std::vector<double> row_sums(const LinkIndex& links, const ClusterLinks& clusters, const PatchTree& tree) {
+  std::vector<double> of_clusters, sums(tree.nodes().size());
+  if (!clusters.empty()) clusters.gather(std::vector<double>(sums.size(), 1), 1, of_clusters);
   for_each_root(tree, [&](std::uint32_t r) {
-    const std::span<Link> of_receiver = links.set_energies_of(r);
-    for (std::size_t i = of_receiver.size(); i-- > 0;) {
-      Link& link = of_receiver[i];
-      if (!link.ghost) {
-        link.energy = luminance[link.source] *
-                      judged_form_factor(tree.node(link.destination), tree.node(link.source), link.form_factor);
-        continue;
-      }
-      link.energy = 0;
-      for (std::size_t k = i + 1; k < i + link.next; k += of_receiver[k].next)
-        link.energy = std::max(link.energy, of_receiver[k].energy);
+    const Root& root = tree.root(r);
+    std::vector<Sum> of_node(root.node_count);
+    if (!clusters.empty()) of_node.front().add(of_clusters[r]);
+    for (const Link& link : links.of_receiver(r)) {
+      if (!link.ghost) of_node[link.destination - root.node_first].add(link.transfer());
     }
+    for (std::uint32_t k = 0; k < root.node_count; ++k) {
+      const Node& node = tree.node(root.node_first + k);
+      for (std::uint32_t c = 0; node.has_children() && c < 4; ++c)
+        of_node[node.first_child + c - root.node_first].add(of_node[k]);
+      sums[root.node_first + k] = of_node[k].value();
+    }
+  });
+  return sums;
+}
+
+namespace {
+
+/// Of links with all their descendants.
+void set_energies(std::span<Link> links, const PatchTree& tree, std::span<const double> luminance) {
+  for (std::size_t i = links.size(); i-- > 0;) {
+    Link& link = links[i];
+    if (!link.ghost) {
+      link.energy = luminance[link.source] *
+                    judged_form_factor(tree.node(link.destination), tree.node(link.source), link.form_factor);
+      continue;
+    }
+    link.energy = 0;
+    for (std::size_t k = i + 1; k < i + link.next; k += links[k].next)
+      link.energy = std::max(link.energy, links[k].energy);
+  }
+}
+
+}  // namespace
+
+void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance) {
+  for_each_root(tree, [&](std::uint32_t r) { set_energies(links.energies_of(r), tree, luminance); });
+}
+
+void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance,
+                  std::span<const std::uint32_t> sources) {
+  for_each_root(tree, [&](std::uint32_t r) {
+    for (const std::uint32_t s : sources) set_energies(links.energies_of(r, s), tree, luminance);
   });
 }
 

@@ -64,13 +64,12 @@ class NodeRadiosity {
   /// [W/m²] what a link that changed brings more than before; to be pushed. Different receiving roots: any threads.
   void receive(std::uint32_t node, double transfer, std::uint32_t source);
   /// Pushes what was received and shoots it on, the patches with the most unshot energy (A |ΔB|, luminance) first: in
-  /// rounds of those that have a tenth of the most, until no more than `share` of the energy that all patches had
-  /// at most is left or `most` rounds are done. Returns the rounds.
+  /// rounds of those that have a tenth of the most, until no more than `share` of the energy that all patches had at
+  /// most is left or `most` rounds are done. Returns the rounds.
   std::uint64_t shoot(const LinkIndex& links, double share, std::uint64_t most = kMostExchanges);
 
-  /// H [W/m²] of a leaf, each band, and Σ F over its links, those above it and those of clusters: as of the last sweep.
+  /// H [W/m²] of a leaf, each band, as of the last exchange.
   std::span<const double> leaf_H(std::uint32_t node) const { return {H_.data() + std::size_t{node} * bands_, bands_}; }
-  double row_sum(std::uint32_t node) const { return row_sum_[node]; }
 
  private:
   void fit_arrays();
@@ -84,14 +83,20 @@ class NodeRadiosity {
   std::vector<double> weights_;
   std::vector<double> rho_, E_;                     ///< by root and band
   std::vector<double> B_, next_, H_;                ///< by node and band
-  std::vector<double> Y_, row_sum_;                 ///< by node
+  std::vector<double> Y_;                           ///< by node
   std::vector<double> w_, next_w_;                  ///< by node, of the error bound
   std::vector<double> received_, unshot_;           ///< by node and band
   std::vector<std::uint8_t> has_received_, there_;  ///< by root
 };
 
-/// Sets the energy of every link, B F of its source.
+/// By node: Σ F over its links, those of the nodes above it and those of clusters.
+std::vector<double> row_sums(const LinkIndex& links, const ClusterLinks& clusters, const PatchTree& tree);
+
+/// Sets the energy of every link, B F of its source; or of all links from some patches. REQUIRES of the first: the
+/// index keeps no changes.
 void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance);
+void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance,
+                  std::span<const std::uint32_t> sources);
 
 /// Form factor by which a link's energy is judged: form_factor itself; where no point of the receiver lies in front of
 /// the source, but some of it does, what a small source at the distance of the nodes' middles would have.

@@ -49,13 +49,8 @@ RootShadows::RootShadows(const LinkTask& task, const ChangedObjects& now, const 
         }
       }
     }
-    for (std::uint32_t r = range.begin(); r < range.end(); ++r) {
-      const auto loop = tree_.node(tree_.root(r).node_first).loop();
-      Ball& ball = balls_[r];
-      for (const Vec3& v : loop) ball.centre = ball.centre + (1.0 / static_cast<double>(loop.size())) * v;
-      for (const Vec3& v : loop) ball.radius = std::max(ball.radius, norm(v - ball.centre));
-      ball.radius *= 1 + 1e-9;
-    }
+    for (std::uint32_t r = range.begin(); r < range.end(); ++r)
+      balls_[r] = ball_around(tree_.node(tree_.root(r).node_first));
   });
 }
 

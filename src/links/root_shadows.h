@@ -35,10 +35,6 @@ class RootShadows {
     bool covers = false;
     std::vector<HalfSpace> region;  ///< unit normals
   };
-  struct Ball {
-    Vec3 centre;
-    double radius = 0;
-  };
 
   bool reaches(std::uint32_t root, const std::vector<HalfSpace>& region) const;
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "src/scene/furnished_room.h"
+#include "src/scene/input_error.h"
 #include "src/solve/radiosity_system.h"
 #include "tests/links/linked_rooms.h"
 
@@ -85,6 +86,24 @@ TEST(ClusterLinks, JoinEveryPairOfPatchesOnce) {
   }
   EXPECT_GT(of_patches, 100u);
   EXPECT_GT(of_clusters, 10 * of_patches);
+}
+
+TEST(ClusterLinks, CountForTheLimitOfMemory) {
+  LinkedRadiosity links(make_furnished_room(150, 1), clustered(0.01));
+  links.build();
+  ClusterLinks again(links.tree(), links.obstacles());
+  const std::uint64_t bytes = links.cluster_links().links().size_bytes();
+  EXPECT_THROW(again.refine(links.radiosity().luminance(), 1e-4, {}, bytes), LimitError);
+  EXPECT_TRUE(again.empty());
+  // Room for the links between patches, 64 bytes each, but not for those between clusters, too.
+  LinkOptions options = clustered(0.005, 10);
+  LinkedRadiosity whole(make_furnished_room(600, 1), options);
+  whole.build();
+  std::uint64_t of_patches = 0;
+  for (std::uint32_t r = 0; r < whole.links().roots(); ++r) of_patches += whole.links().of_receiver(r).size() * 64;
+  options.mesh.memory_limit = of_patches + whole.cluster_links().links().size_bytes() / 2;
+  LinkedRadiosity part(make_furnished_room(600, 1), options);
+  EXPECT_THROW(part.build(), LimitError);
 }
 
 // Neither the estimate nor the truth, of form factors between patches past what stands between, is above the threshold,
