@@ -58,7 +58,7 @@ struct LinkUpdate {
 /// When an update ends early, and what it has done by then.
 struct LinkInterruption {
   /// Asked now and then, by any thread where everything is rebuilt or in any order; what has been looked at then is
-  /// exchanged all the same.
+  /// exchanged all the same: neither that, nor finding the pairs that are to be looked at, ends early.
   std::function<bool()> stop;
   LinkOrder order = LinkOrder::importance;
 };
