@@ -152,16 +152,17 @@ std::string in_words(const FormFactorReport& r) {
     line("reciprocity defect", "not measured, no pair is partial");
   }
   if (const auto& worst = r.matrix.entry) {
-    line("F <= min(1, A_j/A_i)", verdict(worst->holds(), fmt::format("{} ordered pairs of rows", r.entries),
-                                         worst->amount, worst->allowed,
-                                         fmt::format("from row {} to {}", worst->row, worst->column)));
+    line("F <= min(1, A_j/A_i)",
+         verdict(worst->holds(), fmt::format("{} ordered pairs of rows", r.entries), worst->amount, worst->allowed,
+                 fmt::format("from row {} to {}", worst->row, worst->column)));
   } else {
     line("F <= min(1, A_j/A_i)", "no entry to check");
   }
   if (const auto worst = worst_of(r.sample.beyond_unobstructed)) {
-    line("blocked <= unblocked",
-         verdict(worst->holds(), fmt::format("{} unordered pairs integrated again", r.sample.beyond_unobstructed.size()),
-                 worst->amount, worst->allowed, fmt::format("at patches {}, {}", worst->i, worst->j)));
+    line(
+        "blocked <= unblocked",
+        verdict(worst->holds(), fmt::format("{} unordered pairs integrated again", r.sample.beyond_unobstructed.size()),
+                worst->amount, worst->allowed, fmt::format("at patches {}, {}", worst->i, worst->j)));
   } else {
     line("blocked <= unblocked", "not measured, no pair is partial");
   }
