@@ -162,6 +162,13 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   if (extent_coming > before.extent_) return std::nullopt;
   if (extent_leaving == before.extent_ && extent_coming < before.extent_) return std::nullopt;
   if (before.joins_others(gone_first, gone_last, beside)) return std::nullopt;
+  // What is behind the walls of one room depends on where others are.
+  const auto is_of_room = [&](Behind behind) { return behind == Behind::surroundings || behind == Behind::other_room; };
+  const auto has_room = [&](std::size_t polygon, std::size_t last) {
+    return std::any_of(store.behind.begin() + static_cast<std::ptrdiff_t>(polygon),
+                       store.behind.begin() + static_cast<std::ptrdiff_t>(last), is_of_room);
+  };
+  if (has_room(gone.first, gone.last)) return std::nullopt;
 
   PolygonSoup after;
   after.store_ = before.store_;
@@ -181,6 +188,7 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   after.find_shells(first);
   after.set_spans();
   after.mark_closed(arrival.polygons);
+  if (has_room(first_polygon, store.behind.size())) return std::nullopt;
   after.index_ = before.index_.changed(gone_items, after.items_from(first, first_shell));
   if (after.joins_others(first, store.used, beside)) return std::nullopt;
   std::ranges::sort(beside);
@@ -188,7 +196,7 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   after.update_coplanar(first, beside);
   after.touched_ = beside;
   for (std::uint32_t f = first; f < store.used; ++f) after.touched_.push_back(f);
-  if (!store.closed_known &&
+  if (!store.behind_known &&
       std::ranges::any_of(after.touched_, [&](std::uint32_t f) { return after.is_against_patch(f); }))
     return std::nullopt;
   after.store_ = store.whole();

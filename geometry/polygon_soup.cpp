@@ -11,7 +11,6 @@
 #include "geometry/point_hash.h"
 #include "geometry/polygon_soup_store.h"
 #include "geometry/shell.h"
-#include "geometry/surface_pieces.h"
 
 namespace exitance {
 namespace {
@@ -113,7 +112,7 @@ PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role
     store.roles.reserve(most);
     store.ranks.reserve(most);
     store.first_facet.reserve(most + 1);
-    store.closed.reserve(most);
+    store.behind.reserve(most);
   }
   add_facets(cut, nullptr);
   find_neighbours(0);
@@ -121,7 +120,7 @@ PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role
   set_spans();
   coplanar_ = Paged<std::vector<std::uint32_t>>(facets_.size());
   find_coplanar();
-  for (std::uint32_t f = 0; f < used_ && !store.closed_known; ++f) store.closed_known = is_against_patch(f);
+  for (std::uint32_t f = 0; f < used_ && !store.behind_known; ++f) store.behind_known = is_against_patch(f);
   mark_closed(polygons);
   build_index();
   store_ = store.whole();
@@ -337,17 +336,13 @@ bool PolygonSoup::is_against_patch(std::uint32_t f) const {
   });
 }
 
-/// Which polygons bound matter on their backs: those of closed pieces of surface, whether they look out (solids) or in
-/// (rooms). The two sides of a sheet enclose nothing. Of the last polygons of the soup.
+/// What is behind the last polygons of the soup, as far as it matters: closed surfaces bound matter.
 void PolygonSoup::mark_closed(std::span<const Polygon> polygons) {
   Store& store = *store_;
-  const std::size_t first = store.closed.size();
-  store.closed.resize(first + polygons.size(), 0);
-  if (!store.closed_known) return;
-  for (const SurfacePiece& piece : find_surface_pieces(polygons).pieces) {
-    if (!piece.closed || piece.volume == 0) continue;
-    for (const std::uint32_t p : piece.polygons) store.closed[first + p] = 1;
-  }
+  const std::size_t first = store.behind.size();
+  store.behind.resize(first + polygons.size(), Behind::nothing);
+  if (!store.behind_known) return;
+  std::ranges::copy(find_matter(polygons), store.behind.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
 /// Of the index: the facets from first_facet on, and the convex shells from first_shell on.
@@ -396,7 +391,8 @@ std::pair<int, std::int64_t> PolygonSoup::depth_in_plane(std::uint32_t f, bool f
   if (role == Role::sheet) return {sheet, polygon};
   if (role == Role::solid_face) return {from_front ? matter_behind : matter_before, polygon};
   if (from_front) return {patch, -polygon};
-  return {store_->closed[facets_[f].polygon] != 0 ? matter_before : back_of_patch, polygon};
+  const Behind behind = store_->behind[facets_[f].polygon];
+  return {behind == Behind::solid || behind == Behind::surroundings ? matter_before : back_of_patch, polygon};
 }
 
 bool PolygonSoup::covers(std::uint32_t t, std::uint32_t f) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/huge_pages.h"
+#include "geometry/matter.h"
 #include "geometry/polygon_soup.h"
 
 namespace exitance {
@@ -24,9 +25,9 @@ struct PolygonSoup::Store : std::enable_shared_from_this<PolygonSoup::Store> {
   std::vector<Role> roles;
   std::vector<Rank> ranks;
   std::vector<std::uint32_t> first_facet;
-  /// By polygon: part of a closed surface; known only where patches lie against each other.
-  std::vector<char> closed;
-  bool closed_known = false;
+  /// By polygon; known only where patches lie against each other, else nothing.
+  std::vector<Behind> behind;
+  bool behind_known = false;
 
   /// Sizes of the arrays.
   struct End {
@@ -66,7 +67,7 @@ struct PolygonSoup::Store : std::enable_shared_from_this<PolygonSoup::Store> {
     shrink(roles, end.polygons);
     shrink(ranks, end.polygons);
     shrink(first_facet, end.polygons + 1);
-    shrink(closed, end.polygons);
+    shrink(behind, end.polygons);
   }
 
   /// Whether so much fits without moving anything.
@@ -74,7 +75,7 @@ struct PolygonSoup::Store : std::enable_shared_from_this<PolygonSoup::Store> {
     const auto fits = [](const auto& array, std::size_t more) { return array.size() + more <= array.capacity(); };
     return used + more_facets <= facets.size() && fits(corners, more_corners) && fits(vertices, more_corners) &&
            fits(shells, more_facets / 4) && fits(roles, polygons) && fits(ranks, polygons) &&
-           fits(first_facet, polygons) && fits(closed, polygons);
+           fits(first_facet, polygons) && fits(behind, polygons);
   }
 };
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,9 @@ class Room {
   }
   void place(const Placement& placement) {
     for (Polygon& polygon : polygons_) polygon = placement(polygon);
+  }
+  void place(const std::function<Vec3(const Vec3&)>& placement) {
+    for (Polygon& polygon : polygons_) std::ranges::transform(polygon.outer, polygon.outer.begin(), placement);
   }
 
   std::size_t size() const { return polygons_.size(); }
@@ -192,6 +196,57 @@ TEST_P(ClosureOnALattice, HoldsEverywhere) {
     EXPECT_NEAR(front_and_back(view, soup), 1, 1e-12) << "room " << k << ", in the open";
   }
   EXPECT_GT(asked, kRooms);
+}
+
+/// From points of every polygon only fronts are seen, and they fill the hemisphere.
+void expect_only_fronts(const Room& room, const std::string& what) {
+  const PolygonSoup soup = room.soup();
+  Viewpoint view(soup);
+  for (std::uint32_t p = 0; p < room.size(); ++p) {
+    const Loop facet = cut_into_facets(room.polygon(p)).front();
+    for (const double way : {0.08, 0.31, 0.47}) {
+      const Vec3 at = facet[0] + way * (facet[1] - facet[0]) + 0.5 * way * (facet[2] - facet[0]);
+      view.look_from({at, normalized(area_vector(facet)), soup.first_facet(p)});
+      EXPECT_FALSE(view.covered()) << what << ", polygon " << p;
+      double sum = 0;
+      for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
+        const PointFormFactor seen = view.form_factor({f, {}});
+        EXPECT_TRUE(seen.F == 0 || seen.side == Side::front) << what << ": polygon " << p << " sees the back of " << f;
+        sum += seen.F;
+      }
+      EXPECT_NEAR(sum, 1, 1e-12) << what << ", polygon " << p;
+    }
+  }
+}
+
+Faces turned_over(Faces faces) {
+  for (Polygon& face : faces) face = turned_over(face);
+  return faces;
+}
+
+// A box of sheets: sides that look in and sides that look out, none of which bounds a solid.
+TEST_P(ClosureOnALattice, AClosedSheetHidesNothingOfEitherSide) {
+  Room room({0, 0, 0}, {3, 3, 3});
+  const Faces sides = box({1, 1, 1}, {2, 2, 1.5});
+  room.add(sides);
+  Faces others = turned_over(sides);
+  for (Polygon& side : others) std::ranges::rotate(side.outer, side.outer.begin() + 1);
+  room.add(others);
+  room.place(GetParam());
+  expect_only_fronts(room, "closed sheet");
+}
+
+// A wall that two rooms share, of which each has its own side: neither is buried in what is behind the other. Only
+// where coordinates are exact: turned walls of different corners lie one before the other by roundings.
+TEST(Closure, ThinWallsBetweenRoomsHideNothing) {
+  for (const bool turn : {false, true}) {
+    Faces faces = turned_over(box({1, 0, 0}, {2, 1.5, 1}));
+    for (const Polygon& face : turned_over(box({0.25, 1, 0.25}, {0.75, 2, 1.5}))) faces.push_back(face);
+    Room rooms({0, 0, 0}, {1, 1, 1});
+    rooms.add(faces);
+    if (turn) rooms.place([](const Vec3& p) { return Vec3{3 * p.x - 4 * p.y, 4 * p.x + 3 * p.y, 5 * p.z}; });
+    expect_only_fronts(rooms, turn ? "turned by 3, 4, 5" : "rooms");
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Placements, ClosureOnALattice, testing::ValuesIn(placements("closure")),
