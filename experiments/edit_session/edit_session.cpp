@@ -93,10 +93,11 @@ class Frames {
       sum += error.all;
       table.rows.push_back({name_of(way), fmt::format("{}", budget_shots), fmt::format("{}", k), digits(error.all),
                             digits(error.worst_1_percent), fmt::format("{}", work.redistributions),
-                            fmt::format("{}", work.propagations), fmt::format("{}", session.log().size())});
+                            fmt::format("{}", work.propagations),
+                            fmt::format("{}", session.solution().pending_changes())});
       series.points.emplace_back(k, error.all);
     }
-    const std::size_t entries = session.log().size();
+    const std::size_t entries = session.solution().pending_changes();
     if (way == Way::selected) session.apply({Operation::deselect, drag_.cube, {}, {}, {}});
     const RunClock clock;
     const SessionWork rest = session.work({});

@@ -162,6 +162,7 @@ void DynamicRadiosity::change_geometry(std::shared_ptr<const SceneVersion> next,
 }
 
 void DynamicRadiosity::forget_changes() {
+  has_forgotten_ = has_forgotten_ || pending_changes() > 0;
   for (std::size_t k = 0; k < G_.size(); ++k) {
     CompensatedSum& H = H_[std::size_t{version().slot(*changed_last_).element_first} * bands_ + k];
     H.add(G_[k].high());
@@ -189,6 +190,7 @@ void DynamicRadiosity::change_materials(const Scene& scene, std::uint32_t object
 void DynamicRadiosity::start_over() {
   columns_.clear();
   differences_.clear();
+  has_forgotten_ = false;
   drop_gathered();
   layers_.erase(layers_.begin(), layers_.end() - 1);
   layers_.back().shot = {};
@@ -341,11 +343,12 @@ void DynamicRadiosity::set_importance(const ImportanceOptions& options) {
   for (Layer& layer : layers_) layer.importance.reset();
 }
 
-double DynamicRadiosity::redistribution_energy(std::size_t change, std::uint32_t patch) const {
-  const Layer& layer = layers_[change];
+double DynamicRadiosity::redistribution_energy(std::size_t change, std::uint32_t patch) {
+  Layer& layer = layers_[change];
+  rank(layer);
   double sum = 0;
   for (std::uint32_t b = 0; b < bands_; ++b)
-    sum += weights_[b] * std::fabs(layer.shot[std::size_t{patch} * bands_ + b].value());
+    sum += weights_[b] * std::fabs(std::as_const(layer.shot)[std::size_t{patch} * bands_ + b].value());
   return sum * (*layer.importance)[patch];
 }
 
@@ -357,14 +360,12 @@ bool DynamicRadiosity::has_to_redistribute(std::size_t change, std::uint32_t pat
   return !is_zero(layers_[change], patch);
 }
 
-PendingChange DynamicRadiosity::pending(std::size_t change) const {
+PendingChange DynamicRadiosity::pending(std::size_t change) {
   PendingChange result{layers_[change].name, 0, 0, 0};
   for (std::uint32_t p = 0; p < version().patches(); ++p) {
     if (!has_to_redistribute(change, p)) continue;
-    ++result.patches;
-    if (!layers_[change].importance) continue;
     const double energy = redistribution_energy(change, p);
-    if (energy > result.largest_energy) {
+    if (++result.patches == 1 || energy > result.largest_energy) {
       result.largest_energy = energy;
       result.patch = p;
     }
@@ -411,13 +412,14 @@ std::vector<double> DynamicRadiosity::importance_of(const Layer& layer, const Ve
   return areas;
 }
 
+void DynamicRadiosity::rank(Layer& layer) {
+  if (layer.importance) return;
+  layer.importance = std::make_shared<const std::vector<double>>(importance_of(layer, since(layer.version)));
+}
+
 DynamicRadiosity::StrongestChange DynamicRadiosity::strongest_change() {
   StrongestChange found;
   for (std::size_t k = 0; k + 1 < layers_.size(); ++k) {
-    Layer& layer = layers_[k];
-    if (!layer.importance) {
-      layer.importance = std::make_shared<const std::vector<double>>(importance_of(layer, since(layer.version)));
-    }
     for (std::uint32_t p = 0; p < version().patches(); ++p) {
       if (!has_to_redistribute(k, p)) continue;
       const double energy = redistribution_energy(k, p);

@@ -95,8 +95,9 @@ class DynamicRadiosity {
 
   /// What was shot in older versions counts as shot in the present one, and what changed objects shot as gone with
   /// them: nothing is pending any more, and what was not redistributed stays wrong (the paper's solution without a
-  /// log).
+  /// log), until the solution starts over.
   void forget_changes();
+  bool has_forgotten() const { return has_forgotten_; }  ///< anything that was pending
 
   /// Shoots all of a patch's unshot radiosity.
   DynamicShot propagate(std::uint32_t patch);
@@ -110,13 +111,13 @@ class DynamicRadiosity {
 
   /// The oldest first; all patches of a change have been moved when it is gone.
   std::size_t pending_changes() const { return layers_.size() - 1; }
-  PendingChange pending(std::size_t change) const;
+  PendingChange pending(std::size_t change);
 
   /// Of a pending change, by patch: [m²] power that reaches what changed, of the unit exitance that the patch has shot;
-  /// the patch's own area where it is to take back all. Computed when first asked for.
+  /// the patch's own area where it is to take back all. Computed when first asked for; when that is does not matter.
   void set_importance(const ImportanceOptions& options);
   /// What decides the order: the luminance of what a patch has shot times its importance [W or lm].
-  double redistribution_energy(std::size_t change, std::uint32_t patch) const;
+  double redistribution_energy(std::size_t change, std::uint32_t patch);
   bool has_shot(std::uint32_t patch) const;  ///< by the present version
   bool has_to_redistribute(std::size_t change, std::uint32_t patch) const;
 
@@ -135,7 +136,7 @@ class DynamicRadiosity {
   };
   StrongestChange strongest_change();
 
-  /// Bound of ‖B − B*‖∞ / max B for patches, of the worst band, when no change is pending.
+  /// Bound of ‖B − B*‖∞ / max B for patches, of the worst band, when no change is pending and none was forgotten.
   double error_bound() const;
 
   /// B and ΔB by patch and band. 0 where a patch is not there.
@@ -167,6 +168,7 @@ class DynamicRadiosity {
   void refresh_patches_of(const std::vector<std::uint32_t>& elements);
   void drop_empty_layers();
   std::vector<double> importance_of(const Layer& layer, const VersionDifference& difference) const;
+  void rank(Layer& layer);
   double luminance_of(const double* values) const;
   bool is_zero(const Layer& layer, std::uint32_t patch) const;
 
@@ -180,6 +182,7 @@ class DynamicRadiosity {
   std::vector<CompensatedSum> G_;              // by element of the object and band; empty: 0
   std::vector<double> rho_, E_;                // by patch and band
   std::vector<double> B_, unshot_;             // by patch and band
+  bool has_forgotten_ = false;
   ImportanceOptions importance_;
   ColumnStore columns_;
   std::vector<std::shared_ptr<const VersionDifference>> differences_;  // to the present version, where asked for

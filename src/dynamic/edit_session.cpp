@@ -98,6 +98,10 @@ void EditSession::apply(const Edit& edit) {
   if (options_.method == UpdateMethod::scratch) base_.start_over();
 }
 
+bool EditSession::propagates(const DynamicRadiosity& of) const {
+  return of.strongest().energy > 0 && of.error_bound() > options_.tolerance;
+}
+
 /// One shot, the one that comes next; false when nothing is left to do.
 bool EditSession::step(DynamicRadiosity& of, SessionWork& work) {
   const bool gathers = options_.object_terms == ObjectTerms::gathered && options_.method == UpdateMethod::redistribute;
@@ -113,13 +117,13 @@ bool EditSession::step(DynamicRadiosity& of, SessionWork& work) {
     count(of.gather(), work);
     return true;
   }
+  const bool can_propagate = propagates(of);
   const auto unshot = of.strongest();
-  const bool propagates = unshot.energy > 0 && of.error_bound() > options_.tolerance;
   const auto change = of.strongest_change();
-  if (change.energy < 0 && !propagates) return false;
+  if (change.energy < 0 && !can_propagate) return false;
   const bool first = options_.strategy == Strategy::redistribute_first && change.energy >= 0 &&
                      change.energy >= options_.threshold * of.power_of_sources();
-  if (first || !propagates || change.energy >= unshot.energy) {
+  if (first || !can_propagate || change.energy >= unshot.energy) {
     const auto search = options_.method == UpdateMethod::restart ? VersionDifference::Search::everywhere
                                                                  : VersionDifference::Search::shadow_volumes;
     count(of.redistribute(change.change, change.patch, search), work);
@@ -141,24 +145,22 @@ SessionWork EditSession::work(const Budget& budget) {
       const double left = base_.strongest_change().energy;
       if (left < 0 || left < options_.threshold * base_.power_of_sources()) open_temporary(*temporary);
     }
-    if (!step(shown_ ? *shown_ : base_, work)) {
-      if (temporary && !shown_) continue;
-      work.finished = true;
-      break;
-    }
+    if (!step(state(), work)) break;
     if (budget.interrupted && budget.interrupted()) {
       work.interrupted = true;
       break;
     }
   }
   if (temporary && !shown_) open_temporary(*temporary);
+  // Whichever end came first: a budget of just so many shots finishes, too.
+  work.finished = solution().pending_changes() == 0 && !propagates(solution());
   work.seconds = seconds();
   return work;
 }
 
-std::vector<PendingChange> EditSession::log() const {
+std::vector<PendingChange> EditSession::log() {
   std::vector<PendingChange> log;
-  for (std::size_t k = 0; k < solution().pending_changes(); ++k) log.push_back(solution().pending(k));
+  for (std::size_t k = 0; k < state().pending_changes(); ++k) log.push_back(state().pending(k));
   return log;
 }
 
@@ -171,7 +173,7 @@ std::vector<double> EditSession::temporary_change() const {
 }
 
 double EditSession::redistribution_left() {
-  return std::max(0.0, (shown_ ? *shown_ : base_).strongest_change().energy);
+  return std::max(0.0, state().strongest_change().energy);
 }
 
 }  // namespace exitance

@@ -40,7 +40,8 @@ struct SessionOptions {
   double threshold = 1e-4;
   ImportanceOptions importance;
   ObjectTerms object_terms = ObjectTerms::shot;
-  /// Without it what is interrupted by an edit is never redistributed.
+  /// Without it what is interrupted by an edit is never redistributed, and B stays wrong by that, however long the
+  /// session works (DynamicRadiosity::has_forgotten).
   bool log = true;
   double tolerance = 1e-6;  ///< of ‖B − B*‖∞ / max B, worst band: then there is nothing left to do; > 0
   std::uint64_t column_memory = DynamicRadiosity::kColumnMemory;  ///< for form factors that are kept [bytes]
@@ -60,7 +61,8 @@ struct SessionWork {
   std::uint64_t gatherings = 0;  ///< of a patch each; a shot, too, where shots are counted
   double seconds = 0;
   ChangeWork propagation, redistribution, gathering;
-  bool finished = false;     ///< nothing was left to do
+  /// Nothing is left to do: B is within the tolerance, unless changes were forgotten (SessionOptions::log).
+  bool finished = false;
   bool interrupted = false;  ///< by new input
 
   std::uint64_t shots() const { return propagations + redistributions + gatherings; }
@@ -95,13 +97,15 @@ class EditSession {
   std::vector<double> temporary_change() const;
 
   /// Changes that are not worked off, the oldest first: what was interrupted stays here until time is found for it.
-  std::vector<PendingChange> log() const;
+  std::vector<PendingChange> log();
   /// [W or lm] largest energy left to redistribute, as ranked; to propagate.
   double redistribution_left();
   double propagation_left() const { return solution().strongest().energy; }
 
  private:
   void change_geometry(DynamicRadiosity& of, std::uint32_t object, const std::string& name);
+  DynamicRadiosity& state() { return shown_ ? *shown_ : base_; }
+  bool propagates(const DynamicRadiosity& of) const;
   bool step(DynamicRadiosity& of, SessionWork& work);
   std::optional<std::uint32_t> held() const;
   void open_temporary(std::uint32_t object);

@@ -244,16 +244,14 @@ void VersionDifference::compare_in_shadow(std::uint32_t receiver, std::uint32_t 
     return f.F;
   };
   const auto look_before = [&](FormFactorChange& c, Shade shade) {
-    if (known != nullptr) {
-      c.before = entry(*known, c.element);
-      return;
-    }
+    if (known != nullptr) return;
     if (!std::exchange(looked_before, true)) sight_before.set(receiver, patch);
     c.before = F(sight_before, c, shade);
   };
   for (FormFactorChange& c : changes) {
     ++work.candidates;
     if (std::ranges::binary_search(resampled_, c.element)) {
+      if (known != nullptr) c.before = entry(*known, c.element);
       look();
       look_before(c, Shade::penumbra);
       c.after = F(sight_after, c, Shade::penumbra);

@@ -59,13 +59,22 @@ TEST(Dynamic, BudgetsStopReplaysRepeatAndTheLogIsWorkedOff) {
   const auto forgot = frames_of("--budget-shots 7 --work-off --no-log" + kept, "f");
   EXPECT_TRUE(forgot.back()["log"].empty());
   EXPECT_GT(forgot.back()["error"], 1e-5) << "what was interrupted is lost";
+  EXPECT_TRUE(forgot.front()["error_bound"].is_number());
+  EXPECT_TRUE(forgot.back()["error_bound"].is_null());
+  EXPECT_TRUE(forgot.back()["finished"]) << "there is nothing left to do";
+  EXPECT_LE(some.back()["error_bound"], 1e-6);
   const auto none = frames_of("--budget-ms 0", "b");
   EXPECT_EQ(none[1]["shots"], 0);
-  const auto again = frames_of("--replay " + (scratch / "a" / "frames.json").string(), "c");
-  for (std::size_t k = 0; k < 4; ++k) {
-    EXPECT_EQ(again[k]["shots"], some[k]["shots"]);
-    EXPECT_EQ(again[k]["error"], some[k]["error"]) << "the same bits";
+  EXPECT_GT(none[1]["redistribution_left"], 0.0);
+  EXPECT_EQ(none[1]["log"][0]["energy"], none[1]["redistribution_left"]);
+  auto again = frames_of("--work-off --replay " + (scratch / "a" / "frames.json").string() + kept, "c");
+  auto as_before = some;
+  for (auto* frames : {&again, &as_before}) {
+    for (auto& frame : *frames) frame.erase("seconds");
   }
+  EXPECT_EQ(again, as_before) << "the same bits";
+  EXPECT_TRUE(again.front()["finished"]);
+  EXPECT_TRUE(again.back()["finished"]);
 }
 
 TEST(Dynamic, BadInputAndLimits) {

@@ -91,6 +91,107 @@ TEST(EditSession, ABudgetOfZeroShootsNothingAndLeavesAllInTheLog) {
   EXPECT_LT(distance(session.solution()), 1e-10) << "worked off later, nothing is lost";
 }
 
+// Ranked by all that patches have shot, which is B − ΔB of the solution before the edit.
+TEST(EditSession, TheLogIsRankedThoughNothingWasShotSince) {
+  SessionOptions options =
+      options_with(UpdateMethod::restart, Strategy::redistribute_first, ImportanceOptions::Kind::total);
+  EditSession session(test_room(), options);
+  session.work({});
+  const DynamicRadiosity before = session.solution();
+  const std::vector<double> weights = luminance_weights(before.bands());
+  double largest = 0;
+  std::uint32_t strongest = 0;
+  for (std::uint32_t p = 0; p < before.version().patches(); ++p) {
+    double luminance = 0;
+    for (std::uint32_t b = 0; b < before.bands(); ++b) {
+      const std::size_t i = std::size_t{p} * before.bands() + b;
+      luminance += weights[b] * std::fabs(before.patch_B()[i] - before.unshot()[i]);
+    }
+    const double energy = before.version().mesh().patches[p].area * luminance;
+    if (energy > largest * (1 + 1e-9)) {
+      largest = energy;
+      strongest = p;
+    }
+  }
+  session.apply(moved(1, {0.5, 0, 0}));
+  Budget nothing;
+  nothing.shots = 0;
+  session.work(nothing);
+  ASSERT_EQ(session.log().size(), 1u);
+  EXPECT_NEAR(session.log()[0].largest_energy, largest, 1e-9 * largest);
+  EXPECT_EQ(session.log()[0].patch, strongest);
+}
+
+TEST(EditSession, TheLogIsRankedWhereEmittersCameFirstOrAnObjectIsHeld) {
+  EditSession session(test_room(), plain());
+  session.work({});
+  session.apply({Operation::add, 3, {}, {}, {}});
+  Budget six;
+  six.shots = 6;
+  session.work(six);
+  ASSERT_EQ(session.log().size(), 1u);
+  EXPECT_GT(session.log()[0].largest_energy, 0);
+  EXPECT_EQ(session.log()[0].largest_energy, session.redistribution_left());
+  session.work({});
+  session.apply({Operation::select, 1, {}, {}, {}});
+  Budget nothing;
+  nothing.shots = 0;
+  session.work(nothing);
+  const auto log = session.log();
+  ASSERT_EQ(log.size(), 1u) << "taken out and put back at once";
+  EXPECT_GT(log[0].largest_energy, 0);
+}
+
+TEST(EditSession, AskingForTheLogChangesNoShot) {
+  for (const SessionOptions& options : {plain(), gathering()}) {
+    EditSession asked(test_room(), options);
+    asked.work({});
+    asked.apply(moved(1, {0.5, 0, 0}));
+    EditSession other = asked;
+    Budget some;
+    for (some.shots = 0; *some.shots < 12; *some.shots += 3) {
+      asked.work(some);
+      asked.log();
+      other.work(some);
+    }
+    EXPECT_EQ(asked.solution().element_B(), other.solution().element_B());
+  }
+}
+
+TEST(EditSession, WhatWasForgottenIsSaidUntilTheSolutionStartsOver) {
+  SessionOptions options = plain();
+  options.log = false;
+  EditSession session(test_room(), options);
+  session.work({});
+  session.apply(moved(1, {0.25, 0, 0}));
+  EXPECT_FALSE(session.solution().has_forgotten()) << "nothing was left of what came before";
+  Budget five;
+  five.shots = 5;
+  session.work(five);
+  session.apply(moved(2, {-0.25, 0, 0.3}));
+  EXPECT_TRUE(session.solution().has_forgotten());
+  EXPECT_TRUE(session.work({}).finished);
+  EXPECT_GT(distance(session.solution()), 1e-4);
+  EXPECT_TRUE(session.solution().has_forgotten()) << "however long it works";
+  options.method = UpdateMethod::scratch;
+  EditSession anew(session, options);
+  anew.apply(moved(2, {-0.25, 0, 0.2}));
+  EXPECT_FALSE(anew.solution().has_forgotten());
+  anew.work({});
+  EXPECT_LT(distance(anew.solution()), 1e-10);
+}
+
+TEST(EditSession, ABudgetOfJustTheShotsThatAreNeededFinishes) {
+  EditSession session(test_room(), plain());
+  session.work({});
+  session.apply(moved(1, {0.25, 0, 0}));
+  EditSession again = session;
+  Budget just;
+  just.shots = session.work({}).shots();
+  EXPECT_TRUE(again.work(just).finished);
+  EXPECT_EQ(again.work({}).shots(), 0u);
+}
+
 TEST(EditSession, ShotsThatWereCountedReplayBitForBit) {
   const auto run = [](const std::vector<std::uint64_t>& shots, std::vector<std::uint64_t>* counted) {
     EditSession session(test_room(), plain());
