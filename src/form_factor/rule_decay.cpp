@@ -17,6 +17,7 @@ constexpr double kOfCoefficients = 0.1;
 }  // namespace
 
 void RuleDecay::next(int order, double integral, const Truncation& own, double slowest) {
+  // Nothing is expected of a first rule that is too low, nor of one that equals the one before it.
   if (expected_ == 0) expected_ = kOfCoefficients * own.last * std::pow(own.fall, std::max(0, 2 * order_ + 1 - order));
   const double difference = std::fabs(integral - integral_);
   double of_differences = integral > 0 ? std::pow(difference / integral, 0.5 / order_) : 1;

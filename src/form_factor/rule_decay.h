@@ -13,9 +13,10 @@ namespace exitance {
 /// less of what comes far behind them, but see more of the integrand; so what counts is a fall between the two, not
 /// faster than the differences' own, and not faster than 0.2 an order, because the first few may fall by chance. Two
 /// rules may agree by chance, too: where the first was expected to err more than they differ by, that counts twice in
-/// the geometric mean of both. Of a first rule too low to expect anything, the second's coefficients tell: those of
-/// order 2m, which make the error a tenth of their size at least. The error given is ten times what is expected. All
-/// of it is an extrapolation over 2 (n − m) orders: n should be no more than 2m, of a first rule 3m.
+/// the geometric mean of both. Of a first rule too low to expect anything, and of one that equals the one before it,
+/// the next one's coefficients tell: those of order 2m, which make the error a tenth of their size at least. The error
+/// given is ten times what is expected. All of it is an extrapolation over 2 (n − m) orders: n should be no more than
+/// 2m, of a first rule 3m.
 class RuleDecay {
  public:
   RuleDecay() = default;

@@ -158,8 +158,7 @@ class Update {
     std::uint64_t added = 0;
     for (const std::uint32_t s : sources) {
       const std::span<const Link> old = std::as_const(links_).between(r, s);
-      const std::uint64_t left = left_;
-      if (!worker.update({r, s}, old, left - std::min(left, added), made)) continue;
+      if (!worker.update({r, s}, old, made)) continue;
       if (made.size() > old.size()) added += made.size() - old.size();
       if (added > left_) refuse_more_links(task_);
       replacements.push_back({s, std::move(made)});

@@ -1,7 +1,6 @@
 #include "src/links/pair_update.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "src/links/push_pull.h"
@@ -9,6 +8,14 @@
 namespace exitance {
 
 using End = LinkCode::End;
+
+namespace {
+
+bool is_blocked(const std::optional<Sight>& sight) {
+  return sight && sight->state == Sight::State::blocked;
+}
+
+}  // namespace
 
 PairUpdate::PairUpdate(const LinkTask& task, const ChangedObjects& now, const ChangedObjects* before,
                        const RootShadows* shadows)
@@ -102,11 +109,10 @@ double PairUpdate::stake(const PatchPair& pair, std::span<const Link> links) con
   return tree_.node(ends.receiver).area * energy(ends, F);
 }
 
-bool PairUpdate::update(const PatchPair& pair, std::span<const Link> old, std::uint64_t most,
-                        std::vector<Link>& links) {
+bool PairUpdate::update(const PatchPair& pair, std::span<const Link> old, std::vector<Link>& links) {
   const Root &receiver = tree_.root(pair.receiver), &source = tree_.root(pair.source);
   out_.clear();
-  most_ = most > std::numeric_limits<std::uint64_t>::max() - old.size() ? most : old.size() + most;
+  most_ = task_.most_links + std::min<std::uint64_t>(old.size(), ~task_.most_links);
   changed_ = false;
   if (!receiver.present || !source.present || pair.receiver == pair.source) {
     changed_ = !old.empty();
@@ -132,11 +138,13 @@ const Sight& PairUpdate::sight_of(Above& link) {
 }
 
 /// Whether what moved enters the shaft of a link now. What it does not enter of the link above counts where that is not
-/// known.
+/// known, and of one that is blocked: so a descendant that found that changes nothing of what the next ones do.
 bool PairUpdate::is_touched(const Above& link) {
   const auto [to, from] = link.ends;
-  return link.above != nullptr && link.above->now ? sight_.touched(to, from, *link.above->now, changed_now_.items)
-                                                  : sight_.touched(to, from, changed_now_.items);
+  const Above* above = link.above;
+  return above != nullptr && above->now && above->now->state != Sight::State::blocked
+             ? sight_.touched(to, from, *above->now, changed_now_.items)
+             : sight_.touched(to, from, changed_now_.items);
 }
 
 /// Appends to out_ what becomes of a link and its descendants. Of significant ones only, what enters a shaft is sought
@@ -144,7 +152,13 @@ bool PairUpdate::is_touched(const Above& link) {
 void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
   const Link& link = old.front();
   const bool root = above == nullptr;
-  Above here{above, {link.destination, link.source}, renewed || link.stale, !root && above->affected, {}, {}};
+  Above here{.above = above,
+             .ends = {link.destination, link.source},
+             .renewed = renewed || link.stale,
+             .affected = !root && above->affected,
+             .blocked = !root && above->blocked,
+             .before = {},
+             .now = {}};
   const Ends& ends = here.ends;
 
   const auto forget = [&] {
@@ -188,12 +202,12 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     const bool has_changed = task_.before != nullptr;
     const bool has_stale = task_.any_stale && std::ranges::any_of(old, [](const Link& l) { return l.stale; });
     if (!has_changed && !tests_all() && !has_stale) return copy(old);
-    if (has_changed && !(!root && above->blocked())) {
+    if (has_changed && !here.blocked) {
       here.before =
           root || !alone()
               ? (root ? sight_before_->between_roots(ends.receiver, ends.source, changed_before_->items)
-                      : sight_before_->between(ends.receiver, ends.source, *above->before))
-              : sight_before_->between_alone(ends.receiver, ends.source, *above->before, changed_before_->items);
+                      : sight_before_->between(ends.receiver, ends.source, above->before.value()))
+              : sight_before_->between_alone(ends.receiver, ends.source, above->before.value(), changed_before_->items);
       if (here.before->state == Sight::State::blocked) here.before->state = Sight::State::partial;
     }
     const bool touched_before = here.before && here.before->count > 0;
@@ -215,7 +229,8 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     }
     const bool asks = !only_significant() || !link.ghost || has_stale;
     if (asks) touched = has_changed && touches_changed(sight_of(here));
-    here.affected = !root && above->blocked() ? above->affected : touched_before || touched;
+    const bool below_blocked = !root && (here.blocked || is_blocked(above->now));
+    here.affected = below_blocked ? above->affected : touched_before || touched;
     may_change = task_.scope != LinkScope::values && here.affected;
     evaluate = tests_all() || here.affected;
     if (!evaluate && !has_stale) {
@@ -241,6 +256,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
   }
 
   if (!only_significant()) sight_of(here);
+  here.blocked = here.blocked || is_blocked(here.now);
   const std::size_t at = out_.size();
   const std::uint64_t skipped = work_.skipped;
   out_.push_back(link);

@@ -37,8 +37,8 @@ class PairUpdate {
   double stake(const PatchPair& pair, std::span<const Link> links) const;
 
   /// Whether what becomes of the old links differs; then fills `links` with it, in order. Throws LimitError as soon as
-  /// these are more than `most` more.
-  bool update(const PatchPair& pair, std::span<const Link> old, std::uint64_t most, std::vector<Link>& links);
+  /// one pair takes more new links than the task allows for all, those that un-refinement would take away included.
+  bool update(const PatchPair& pair, std::span<const Link> old, std::vector<Link>& links);
 
   LinkWork work() const;
 
@@ -52,10 +52,9 @@ class PairUpdate {
     Ends ends;
     bool renewed = false;         ///< an end has moved, or it was left stale: everything about it is new
     bool affected = false;        ///< by the old or the new place of an object
-    std::optional<Sight> before;  ///< in the scene as it was, among the objects that moved, where that was asked
-    std::optional<Sight> now;     ///< in the scene as it is, where that was asked
-
-    bool blocked() const { return now && now->state == Sight::State::blocked; }
+    bool blocked = false;         ///< in the scene as it is, as was known before any descendant was looked at
+    std::optional<Sight> before;  ///< in the scene as it was, among the objects that moved; where one has, not blocked
+    std::optional<Sight> now;     ///< in the scene as it is, where that was asked, maybe by a descendant
   };
 
   // Of a scope.

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "src/solve/compensated.h"
 #include "src/solve/radiosity_system.h"
 
 namespace exitance {
@@ -19,22 +20,6 @@ namespace {
 constexpr double kShootTogether = 0.1;
 /// Of the bound: when a sweep adds little enough to w, and more than what rounding does to it, relative.
 constexpr double kReflected = 0.1, kSlack = 1e-12;
-
-/// A sum of doubles, and what rounding took from it (Knuth): as if summed with twice the digits, and rounded once.
-struct Sum {
-  double sum = 0, lost = 0;
-
-  void add(double x) {
-    const double all = sum + x, part = all - sum;
-    lost += (sum - (all - part)) + (x - part);
-    sum = all;
-  }
-  void add(const Sum& other) {
-    add(other.sum);
-    lost += other.lost;
-  }
-  double value() const { return sum + lost; }
-};
 
 /// do_for(bands), of which the compiler knows what is most frequent.
 template <class Do>
@@ -197,14 +182,14 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& c
     const std::size_t first = root.node_first, count = root.node_count, width = bands_ + 1;
     const auto rho = std::span(rho_).subspan(std::size_t{r} * bands_, bands_);
     const double largest_rho = *std::ranges::max_element(rho);
-    thread_local std::vector<Sum> sums;  // of each band, and of w
+    thread_local std::vector<CompensatedSum> sums;  // of each band, and of w
     sums.assign(count * width, {});
     with_bands(bands_, [&](auto bands) {
       for (const Link& link : links.of_receiver(r)) {
         if (link.ghost) continue;
         const double F = link.transfer();
         if (F == 0) continue;
-        Sum* sum = sums.data() + (link.destination - first) * (bands + 1);
+        CompensatedSum* sum = sums.data() + (link.destination - first) * (bands + 1);
         const double* B = B_.data() + std::size_t{link.source} * bands;
         for (std::size_t b = 0; b < bands; ++b) sum[b].add(F * B[b]);
         if (bounding) sum[bands].add(F * w_[link.source]);
@@ -220,7 +205,7 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& c
     if (bounding) found.reflected = found.w = 0;
     for (std::size_t n = first; n < first + count; ++n) {
       const Node& node = tree_->nodes()[n];
-      const Sum* sum = sums.data() + (n - first) * width;
+      const CompensatedSum* sum = sums.data() + (n - first) * width;
       for (std::size_t k = 0; node.has_children() && k < 4; ++k) {
         for (std::size_t b = 0; b < width; ++b) sums[(node.first_child + k - first) * width + b].add(sum[b]);
       }
@@ -385,7 +370,7 @@ std::vector<double> row_sums(const LinkIndex& links, const ClusterLinks& cluster
   if (!clusters.empty()) clusters.gather(std::vector<double>(sums.size(), 1), 1, of_clusters);
   for_each_root(tree, [&](std::uint32_t r) {
     const Root& root = tree.root(r);
-    std::vector<Sum> of_node(root.node_count);
+    std::vector<CompensatedSum> of_node(root.node_count);
     if (!clusters.empty()) of_node.front().add(of_clusters[r]);
     for (const Link& link : links.of_receiver(r)) {
       if (!link.ghost) of_node[link.destination - root.node_first].add(link.transfer());

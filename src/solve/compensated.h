@@ -24,6 +24,10 @@ class CompensatedSum {
     low_ += std::fma(a, b, -product);
     add(product);
   }
+  void add(const CompensatedSum& other) {
+    add(other.high_);
+    low_ += other.low_;
+  }
   double value() const { return high_ + low_; }
   double high() const { return high_; }
   double low() const { return low_; }

@@ -4,34 +4,10 @@
 
 #include <cmath>
 
-#include "tests/links/rooms.h"
+#include "tests/links/cluttered_room.h"
 
 namespace exitance {
 namespace {
-
-/// Boxes in a room: some stand on the floor or on each other, share planes, edges and corners; all turned at last.
-Scene cluttered_room(std::mt19937_64& random, bool on_lattice, double degrees) {
-  Scene scene = empty_room();
-  const int boxes = 3 + static_cast<int>(random() % 4);
-  for (int k = 0; k < boxes; ++k) {
-    const auto some = [&](double low, double high) {
-      const double v = uniform(random, low, high);
-      return on_lattice ? std::round(4 * v) / 4 : v;
-    };
-    const Vec3 low{some(0.25, 2), some(0.25, 2), random() % 2 ? 0 : some(0, 1.5)};
-    const Vec3 size{some(0.25, 0.8), some(0.25, 0.8), some(0.25, 0.8)};
-    add(scene, "box", box_faces(low, low + size, 2, 0));
-  }
-  Placement turn{rotation({1, 2, 2}, degrees), {}};
-  place(scene, turn);
-  return scene;
-}
-
-Vec3 point_of(const Node& node, std::mt19937_64& random) {
-  const double u = uniform(random, 0.001, 0.999), v = uniform(random, 0.001, 0.999);
-  const auto& c = node.corner;
-  return (1 - v) * ((1 - u) * c[0] + u * c[1]) + v * ((1 - u) * (node.corners == 4 ? c[3] : c[2]) + u * c[2]);
-}
 
 /// Whether the line passes through the inside of a box that is no room, by more than rounding: slabs of the box that
 /// was turned, found again by turning back.
@@ -120,30 +96,6 @@ TEST(LinkSight, IsNeverWronglyOpenOrBlocked) {
   EXPECT_GT(open, 1000u);
   EXPECT_GT(blocked, 50u);
   EXPECT_GT(partial, 1000u);
-}
-
-// From points of the receiver, as if nothing stood between.
-TEST(PatchTree, NoFormFactorIsAboveItsBound) {
-  std::mt19937_64 random(4);
-  const EditedScene scene(cluttered_room(random, false, 30));
-  const Obstacles obstacles(scene);
-  const PolygonSoup& soup = obstacles.soup();
-  const PatchTree tree(scene, soup, {{}, 0.01});
-  Viewpoint view(soup);
-  std::size_t near = 0;
-  for (int k = 0; k < 20'000; ++k) {
-    const Node& to = tree.node(static_cast<std::uint32_t>(random() % tree.nodes().size()));
-    const Node& from = tree.node(static_cast<std::uint32_t>(random() % tree.nodes().size()));
-    if (to.root == from.root) continue;
-    const double bound = most_form_factor(to, from, soup);
-    ASSERT_LE(bound, 1);
-    view.look_from({point_of(to, random), soup.facets()[to.facet].plane.normal, to.facet});
-    const PointFormFactor f = view.form_factor(source_of(from), {}, 1e-13);
-    if (f.side != Side::front || f.F == 0) continue;
-    ASSERT_LE(f.F, bound * (1 + 1e-12));
-    near += bound < 2 * f.F;
-  }
-  EXPECT_GT(near, 1000u);
 }
 
 }  // namespace

@@ -77,6 +77,38 @@ TEST(LinkedRadiosity, HvtLeavesWhatDirectLeavesBitForBit) {
   }
 }
 
+/// Two walls that face each other, finely linked, and a screen beside them.
+Scene two_walls() {
+  Scene scene;
+  scene.bands = 1;
+  scene.materials = {grey(0.5, 0), grey(0.5, 1)};
+  add(scene, "light", {box_faces({-1, 0, 0}, {0, 1, 1}, 1, 0)[5]});
+  add(scene, "wall", {box_faces({2, 0, 0}, {3, 1, 1}, 0, 0)[4]});
+  add(scene, "screen", box_faces({0.9, 3, -1}, {1.1, 6, 2}, 0, 0));
+  return scene;
+}
+
+// Many links are then blocked of which only one above is asked about.
+TEST(LinkedRadiosity, AScreenMovesBetweenTwoWallsAndBack) {
+  LinkOptions options;
+  options.eps2 = 2e-3;
+  options.eps1 = 1e-3;
+  options.smallest_area = 0.01;
+  options.B_eps = 1e-5;
+  for (const double covers : {-4.0, -2.6, -5.5}) {  // all of them, or a part from either side
+    LinkedRadiosity direct(two_walls(), options), hvt(two_walls(), options), peu(two_walls(), options);
+    for (LinkedRadiosity* links : {&direct, &hvt, &peu}) links->build();
+    for (const double y : {covers, 0.0}) {
+      const std::vector<Edit> edits{move_to(2, {0, y, 0})};
+      direct.update(edits, LinkMethod::direct);
+      hvt.update(edits, LinkMethod::hvt);
+      peu.update(edits, LinkMethod::hvt_peu);
+      EXPECT_TRUE(same_bits(direct.links(), hvt.links())) << covers << ", " << y;
+      EXPECT_LT(error_of(peu), 1e-4) << covers << ", " << y;
+    }
+  }
+}
+
 TEST(LinkedRadiosity, ASolidThatTwoObjectsCloseChangesWithEither) {
   Scene scene = empty_room();
   const std::vector<Surface> faces = box_faces({1, 1, 1}, {2, 2, 2}, 2, 0);
