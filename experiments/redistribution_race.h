@@ -249,7 +249,6 @@ class RaceTrack {
     const auto energies = [&](const ImportanceOptions& options) {
       DynamicRadiosity state = changed;
       state.set_importance(options);
-      state.strongest_change();
       std::vector<double> energy(patches);
       for (const std::uint32_t p : senders) energy[p] = state.redistribution_energy(0, p);
       return energy;

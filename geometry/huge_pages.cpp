@@ -17,8 +17,10 @@ std::align_val_t aligned(std::size_t bytes, std::size_t alignment) {
 
 void* allocate_in_huge_pages(std::size_t bytes, std::size_t alignment) {
   void* const memory = ::operator new(bytes, aligned(bytes, alignment));
+#ifdef MADV_HUGEPAGE
   // Whole pages only, so that no more memory is taken. A system that has none says so, and its own pages do as well.
-  if (bytes >= kPage) madvise(memory, bytes / kPage * kPage, MADV_HUGEPAGE);
+  if (bytes >= kPage) (void)madvise(memory, bytes / kPage * kPage, MADV_HUGEPAGE);
+#endif
   return memory;
 }
 

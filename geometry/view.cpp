@@ -46,7 +46,8 @@ void View::set(SeenFacet& seen, std::uint32_t facet, int side, bool outside_shel
   seen.facing = (side < 0 && outside_shell) || excluded(facet) ? std::int8_t{0} : seen.side;
 }
 
-/// As side_of, four at a time, the last facet once more where there are fewer.
+/// As side_of, by the bound that is proven there (polygon_soup.cpp), four at a time, the last facet once more where
+/// there are fewer.
 void View::look_at(const Shell& shell) {
   const bool is_outside = outside(shell);
   const Vec3 x = receiver_.point;

@@ -199,6 +199,11 @@ bool Viewpoint::State::hidden_by_recent() {
 /// Adds half-spaces that hold the way to the source in its shadow along each axis, a wedge unless the point's own
 /// shadow lies within that of the source. No side of the cone need be near these planes, and only such as hold an axis
 /// keep a box away that a thin cone passes by at a slant.
+///
+/// The corners are a whole facet's, pieces take what is found for theirs. The normal as rounded is the normal, so that
+/// only signs of heights count: u of each difference, of each product and of the sum make one that is found ≥ 0 truly
+/// ≥ −3 u |n|₁ |v − x|, |v − x| ≤ reach / 2. n · x adds 2 u |n|₁ reach / 4 and the subtraction u |n|₁ reach / 4: well
+/// under 16 u together.
 void Viewpoint::State::bound_across_axes(double reach) {
   const Vec3 x = view.receiver().point;
   for (const int axis : {0, 1, 2}) {

@@ -80,8 +80,9 @@ class Dynamic {
     verb.add_option("--budget-ms", budget_ms_, "Milliseconds a frame after the first; 0: none")
         ->check(number_between(0));
     verb.add_option("--replay", replay_, "frames.json of an earlier run whose numbers of shots to repeat");
-    verb.add_flag("!--no-log", options_.log,
-                  "Forget what an edit interrupts: it is never redistributed, and the error that it leaves has no bound");
+    verb.add_flag(
+        "!--no-log", options_.log,
+        "Forget what an edit interrupts: it is never redistributed, and the error that it leaves has no bound");
     verb.add_flag("--work-off", work_off_, "After the last event one more frame that works off all that was left");
     verb.add_flag("!--no-reference", reference_, "Leave out the converged references, and with them the errors");
     verb.add_option("--references", reference_file_,
@@ -104,8 +105,8 @@ class Dynamic {
     verb.footer(
         "frames.json is a list: frame 0 is the scene before the first event, each other one follows the events of one\n"
         "time. error and error_worst_1_percent are eq. 7 of George et al. (1990) over elements, against the converged\n"
-        "solution of that frame; null where there is no reference. error_bound is null while a change is in the log and\n"
-        "once --no-log has forgotten one: finished then says that nothing is left to do, not that B is right.\n"
+        "solution of that frame; null where there is no reference. error_bound is null while a change is in the log\n"
+        "and once --no-log has forgotten one: finished then says that nothing is left to do, not that B is right.\n"
         "Each frame is written when it is done; Ctrl-C ends with those so far, exit code 4.\n"
         "Methods by links link all pairs of patches: clusters of patches are for solve --method hierarchical.");
   }

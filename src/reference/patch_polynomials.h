@@ -22,8 +22,6 @@ class PatchPolynomials {
   /// enough elements in general position, as a grid has. Throws std::invalid_argument where there are fewer than terms.
   PatchPolynomials(const PatchMesh& mesh, std::uint32_t degree);
 
-  std::uint32_t degree() const { return degree_; }
-
   /// Terms of the polynomial of a patch.
   std::size_t terms() const { return (degree_ + 1) * (degree_ + 2) / 2; }
 

@@ -33,7 +33,7 @@ std::vector<typename VisibleRegion<Real>::Effect> effects(View& view, const Poly
 }
 
 TEST(Sieve, HoldsBackWhatHidesNothing) {
-  std::size_t facets = 0, idle = 0, held_back = 0, between = 0;
+  std::size_t facets = 0, idle = 0, held_back = 0, back = 0, between = 0, inside = 0;
   for (const PointCase& question : degenerate_cases()) {
     std::vector<Polygon> polygons{question.source};
     std::vector<Role> roles{Role::unoccluding};
@@ -67,18 +67,26 @@ TEST(Sieve, HoldsBackWhatHidesNothing) {
       Sieve sieve;
       sieve.set(view.receiver(), soup.facets()[source].plane, facing, region.source(), soup.vertices());
       for (std::uint32_t f = 0; f < exact.size(); ++f) {
-        if (view.facing(f) == 0 || f == source) continue;
+        if (f == source) continue;
+        if (sieve.glance(soup.first_corners(f)) == Sieve::Glance::back) {
+          ++back;
+          EXPECT_LT(view.side(f), 0) << question.name << ", facet " << f;
+        }
+        if (view.facing(f) == 0) continue;
         ++facets;
         const bool hides = exact[f] != VisibleRegion<long double>::Effect::none;
         idle += !hides;
         const auto verdict = sieve.judge(soup.facets()[f].plane, soup.first_corners(f), view.facing(f));
         held_back += !hides && verdict == Sieve::Verdict::held_back;
-        between += verdict == Sieve::Verdict::between || verdict == Sieve::Verdict::inside;
+        between += verdict == Sieve::Verdict::between;
+        inside += verdict == Sieve::Verdict::inside;
       }
     }
   }
   EXPECT_GT(held_back, idle / 3) << "of " << idle << " that hide nothing";
   EXPECT_GT(between, facets / 8);
+  EXPECT_GT(inside, 0u);
+  EXPECT_GT(back, 0u);
 }
 
 }  // namespace

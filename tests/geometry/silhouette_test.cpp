@@ -102,5 +102,31 @@ TEST(Silhouette, AgreesWithTheOracle) {
   EXPECT_GT(partial, asked / 8);
 }
 
+// Of a solid across the horizon, or below it, the whole outline tells nothing; of one that touches it neither.
+TEST(Silhouette, IsUsableOnlyAboveTheHorizon) {
+  const Polygon source{{{-4, -4, 9}, {-4, 4, 9}, {4, 4, 9}, {4, -4, 9}}, {}};
+  for (int kind = 0; kind < 6; ++kind) {
+    double lowest = HUGE_VAL, highest = -HUGE_VAL;
+    for (const Polygon& f : solid(kind)) {
+      for (const Vec3& v : f.outer) {
+        lowest = std::min(lowest, v.z);
+        highest = std::max(highest, v.z);
+      }
+    }
+    for (const double low : {lowest - highest - 1, 0.5 * (lowest - highest), 0.0, 0x1p-40, 1.0}) {
+      std::vector<Polygon> polygons = moved(solid(kind), {0, 0, low - lowest});
+      std::vector<Role> roles(polygons.size(), Role::solid_face);
+      polygons.push_back(source);
+      roles.push_back(Role::patch);
+      const PolygonSoup soup(polygons, roles);
+      ASSERT_EQ(soup.shells().size(), 1u);
+      View view(soup);
+      view.look_from({{-7.3, -5.9, 0}, {0, 0, 1}});
+      ViewCones<double> cones(view);
+      EXPECT_EQ(cones.silhouette_of(0).is_usable, low > 0) << "solid " << kind << " from " << low;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace exitance

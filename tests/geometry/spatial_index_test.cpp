@@ -67,6 +67,21 @@ Found search_at_random(double size, const Vec3& origin, bool flat, std::uint64_t
   return total;
 }
 
+TEST(Box, HoldsItsBoundaryAndMeetsWhatTouches) {
+  const Box box{{-1, -1, -1}, {1, 1, 1}};
+  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+    for (const double side : {-1.0, 1.0}) {
+      const auto shifted = [&](double by) { return Box{box.lower + side * by * axis, box.upper + side * by * axis}; };
+      EXPECT_TRUE(box.contains(side * axis));
+      EXPECT_FALSE(box.contains(side * 1.5 * axis));
+      EXPECT_TRUE(box.contains(side * 1.5 * axis, 0.5));
+      EXPECT_FALSE(box.contains(side * 1.75 * axis, 0.5));
+      EXPECT_TRUE(box.overlaps(shifted(2)));
+      EXPECT_FALSE(box.overlaps(shifted(2.5)));
+    }
+  }
+}
+
 TEST(SpatialIndex, LeavesNothingOut) {
   for (const double size : {1.0, 1e-9, 3e7}) {
     for (const bool flat : {false, true}) {
