@@ -391,7 +391,10 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
     return;
   }
   // What links may bring follows at once: thresholds are asked of it.
-  if (method == LinkMethod::hvt_peu) judge_what_is_brighter();
+  if (method == LinkMethod::hvt_peu) {
+    links_.grow(tree_.roots().size());
+    judge_what_is_brighter();
+  }
   update.seconds_scene = watch.lap();
 
   for (std::size_t object = 0; object < objects; ++object) relit[object] |= relit_before[object];
