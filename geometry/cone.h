@@ -382,7 +382,7 @@ class Row {
   void fill(const ConeSide<Real>& side, const Corners<Real>& corners, const ViewFrame& frame, StageCounts& counts) {
     const std::size_t n = corners.block_count();
     if (blocks_.size() < n) blocks_.resize(n);
-    SignBytes kept_positive = 0, kept_negative = 0, not_positive = 0, not_negative = 0;
+    SignBytes kept_positive = 0, kept_negative = 0, not_positive = 0;
     for (std::size_t b = 0; b < n; ++b) {
       const SignBytes present = corners.present(b), kept = corners.block(b).kept;
       Block& row = blocks_[b];
@@ -394,12 +394,10 @@ class Row {
       kept_positive |= positive & kept;
       kept_negative |= negative & kept;
       not_positive |= present & ~positive;
-      not_negative |= present & ~negative;
     }
     any_positive_ = kept_positive != 0;
     any_negative_ = kept_negative != 0;
     all_positive_ = not_positive == 0;
-    all_negative_ = not_negative == 0;
   }
 
   int sign(std::size_t k) const { return sign_byte(blocks_[k / kLanes].signs, k % kLanes); }
@@ -411,9 +409,8 @@ class Row {
   /// Whether some corner of the cone, those that were cut off left aside, has the sign.
   bool any_positive() const { return any_positive_; }
   bool any_negative() const { return any_negative_; }
-  /// Whether all corners, cut off or not, have the sign.
+  /// Whether all corners do, cut off or not.
   bool all_positive() const { return all_positive_; }
-  bool all_negative() const { return all_negative_; }
 
  private:
   struct alignas(64) Block {
@@ -453,7 +450,7 @@ class Row {
   }
 
   std::vector<Block> blocks_;
-  bool any_positive_ = false, any_negative_ = false, all_positive_ = false, all_negative_ = false;
+  bool any_positive_ = false, any_negative_ = false, all_positive_ = false;
 };
 
 /// Sides of a cone side by side; of places without a side all is 0.

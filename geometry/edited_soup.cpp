@@ -163,10 +163,8 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   if (extent_leaving == before.extent_ && extent_coming < before.extent_) return std::nullopt;
   if (before.joins_others(gone_first, gone_last, beside)) return std::nullopt;
   // What is behind the walls of one room depends on where others are.
-  const auto is_of_room = [&](Behind behind) { return behind == Behind::surroundings || behind == Behind::other_room; };
-  const auto has_room = [&](std::size_t polygon, std::size_t last) {
-    return std::any_of(store.behind.begin() + static_cast<std::ptrdiff_t>(polygon),
-                       store.behind.begin() + static_cast<std::ptrdiff_t>(last), is_of_room);
+  const auto has_room = [&](std::size_t first, std::size_t last) {
+    return std::ranges::any_of(std::span(store.behind).subspan(first, last - first), is_of_room);
   };
   if (has_room(gone.first, gone.last)) return std::nullopt;
 
@@ -187,7 +185,7 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   after.find_neighbours(first);
   after.find_shells(first);
   after.set_spans();
-  after.mark_closed(arrival.polygons);
+  after.find_what_is_behind(arrival.polygons);
   if (has_room(first_polygon, store.behind.size())) return std::nullopt;
   after.index_ = before.index_.changed(gone_items, after.items_from(first, first_shell));
   if (after.joins_others(first, store.used, beside)) return std::nullopt;

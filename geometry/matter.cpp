@@ -1,7 +1,6 @@
 #include "geometry/matter.h"
 
 #include <algorithm>
-#include <set>
 
 #include "geometry/contact.h"
 #include "geometry/surface_pieces.h"
@@ -9,52 +8,40 @@
 namespace exitance {
 namespace {
 
-/// The corners of a polygon, or of the same turned over, whatever corner and hole each is given from.
-using Outline = std::vector<std::vector<Vec3>>;
+using Loop = std::vector<Vec3>;
+/// The corners of a polygon, the same whatever corner and hole it is given from; the outer loop first.
+using Outline = std::vector<Loop>;
 
-bool less(const Vec3& a, const Vec3& b) {
-  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+bool less(const Loop& a, const Loop& b) {
+  return std::ranges::lexicographical_compare(a, b, lexicographically_less);
 }
 
-bool less_loop(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  return std::ranges::lexicographical_compare(a, b, less);
+Loop from_least(Loop loop) {
+  std::ranges::rotate(loop, std::ranges::min_element(loop, lexicographically_less));
+  return loop;
 }
 
-struct LessOutline {
-  bool operator()(const Outline& a, const Outline& b) const {
-    return std::ranges::lexicographical_compare(a, b, less_loop);
-  }
-};
+Loop reversed(Loop loop) {
+  std::ranges::reverse(loop);
+  return loop;
+}
 
 /// Holes may run either way: of both ways the lesser one counts.
 Outline outline_of(const Polygon& polygon, bool turned_over) {
-  const auto from_least = [](std::vector<Vec3> loop) {
-    std::ranges::rotate(loop, std::ranges::min_element(loop, less));
-    return loop;
-  };
-  const auto reversed = [](std::vector<Vec3> loop) {
-    std::ranges::reverse(loop);
-    return loop;
-  };
-  Outline outline;
-  for (const auto& hole : polygon.holes)
-    outline.push_back(std::ranges::min(from_least(hole), from_least(reversed(hole)), less_loop));
-  std::ranges::sort(outline, less_loop);
-  outline.insert(outline.begin(), from_least(turned_over ? reversed(polygon.outer) : polygon.outer));
+  Outline outline{from_least(turned_over ? reversed(polygon.outer) : polygon.outer)};
+  for (const Loop& hole : polygon.holes)
+    outline.push_back(std::ranges::min(from_least(hole), from_least(reversed(hole)), less));
+  std::sort(outline.begin() + 1, outline.end(), less);
   return outline;
 }
 
-/// Whether one piece is the other turned over.
-bool are_sides_of_a_sheet(std::span<const Polygon> polygons, const SurfacePiece& a, const SurfacePiece& b) {
-  if (a.polygons.size() != b.polygons.size()) return false;
-  std::multiset<Outline, LessOutline> of_a;
-  for (const std::uint32_t p : a.polygons) of_a.insert(outline_of(polygons[p], false));
-  return std::ranges::all_of(b.polygons, [&](std::uint32_t p) {
-    const auto twin = of_a.find(outline_of(polygons[p], true));
-    if (twin == of_a.end()) return false;
-    of_a.erase(twin);
-    return true;
-  });
+/// Of all polygons of a piece, in an order that does not depend on theirs.
+std::vector<Outline> outlines_of(std::span<const Polygon> polygons, const SurfacePiece& piece, bool turned_over) {
+  std::vector<Outline> outlines;
+  for (const std::uint32_t p : piece.polygons) outlines.push_back(outline_of(polygons[p], turned_over));
+  std::ranges::sort(
+      outlines, [](const Outline& a, const Outline& b) { return std::ranges::lexicographical_compare(a, b, less); });
+  return outlines;
 }
 
 }  // namespace
@@ -72,8 +59,10 @@ std::vector<Behind> find_matter(std::span<const Polygon> polygons) {
     set(piece, piece.volume > 0 ? Behind::solid : Behind::surroundings);
   }
   for (const SurfacePiece* room : rooms) {
-    const auto other = std::ranges::find_if(
-        solids, [&](const SurfacePiece* solid) { return are_sides_of_a_sheet(polygons, *room, *solid); });
+    const std::vector<Outline> turned_over = outlines_of(polygons, *room, true);
+    const auto other = std::ranges::find_if(solids, [&](const SurfacePiece* solid) {
+      return solid->polygons.size() == turned_over.size() && outlines_of(polygons, *solid, false) == turned_over;
+    });
     if (other == solids.end()) continue;
     set(*room, Behind::nothing);
     set(**other, Behind::nothing);

@@ -16,6 +16,13 @@ enum class Behind : std::uint8_t {
   other_room     ///< such a piece again: a wall without thickness between two rooms
 };
 
+constexpr bool is_matter(Behind behind) {
+  return behind == Behind::solid || behind == Behind::surroundings;
+}
+constexpr bool is_of_room(Behind behind) {
+  return behind == Behind::surroundings || behind == Behind::other_room;
+}
+
 /// By polygon, from the closed pieces of surface (surface_pieces.h) and, exactly, from coplanar_overlaps:
 ///  - a piece that looks in of which every polygon is one of a piece that looks out turned over, corner by corner, is
 ///    with that a closed sheet of two sides: nothing is behind either;

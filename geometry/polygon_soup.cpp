@@ -121,7 +121,7 @@ PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role
   coplanar_ = Paged<std::vector<std::uint32_t>>(facets_.size());
   find_coplanar();
   for (std::uint32_t f = 0; f < used_ && !store.behind_known; ++f) store.behind_known = is_against_patch(f);
-  mark_closed(polygons);
+  find_what_is_behind(polygons);
   build_index();
   store_ = store.whole();
 }
@@ -336,8 +336,8 @@ bool PolygonSoup::is_against_patch(std::uint32_t f) const {
   });
 }
 
-/// What is behind the last polygons of the soup, as far as it matters: closed surfaces bound matter.
-void PolygonSoup::mark_closed(std::span<const Polygon> polygons) {
+/// Behind the last polygons of the soup, where that is to be known.
+void PolygonSoup::find_what_is_behind(std::span<const Polygon> polygons) {
   Store& store = *store_;
   const std::size_t first = store.behind.size();
   store.behind.resize(first + polygons.size(), Behind::nothing);
@@ -391,8 +391,7 @@ std::pair<int, std::int64_t> PolygonSoup::depth_in_plane(std::uint32_t f, bool f
   if (role == Role::sheet) return {sheet, polygon};
   if (role == Role::solid_face) return {from_front ? matter_behind : matter_before, polygon};
   if (from_front) return {patch, -polygon};
-  const Behind behind = store_->behind[facets_[f].polygon];
-  return {behind == Behind::solid || behind == Behind::surroundings ? matter_before : back_of_patch, polygon};
+  return {is_matter(store_->behind[facets_[f].polygon]) ? matter_before : back_of_patch, polygon};
 }
 
 bool PolygonSoup::covers(std::uint32_t t, std::uint32_t f) const {

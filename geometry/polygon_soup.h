@@ -20,8 +20,8 @@ namespace exitance {
 
 /// How a polygon takes part.
 enum class Role : std::uint8_t {
-  patch,  ///< emits, receives and occludes; covers an earlier patch in its plane that faces the same way and, as part
-          ///< of a closed surface, one that it faces: what lies between is buried in a solid
+  patch,  ///< emits, receives and occludes; covers an earlier patch in its plane that faces the same way and, where
+          ///< matter is behind it (matter.h), one that it faces: what lies between is buried
   sheet,  ///< occludes only; covers every patch in whose plane it lies
   solid_face,  ///< a face, outward, of a closed polyhedron that occludes only; covers a patch in its plane which it
                ///< faces
@@ -177,7 +177,7 @@ class PolygonSoup {
   void find_neighbours(std::uint32_t first);
   void find_shells(std::uint32_t first);
   void find_coplanar();
-  void mark_closed(std::span<const Polygon> polygons);
+  void find_what_is_behind(std::span<const Polygon> polygons);
   void build_index();
   bool lies_in_plane(std::uint32_t t, std::uint32_t f) const;
   Box box_of(std::uint32_t facet) const;

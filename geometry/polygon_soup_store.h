@@ -13,12 +13,12 @@
 
 namespace exitance {
 
-/// Each soup has all before an end of its own. A place is written by the soup that first has it and not again as long as
-/// one that has it is there; arrays never move once they are shared.
+/// Each soup has all before an end of its own. A place is written by the soup that first has it and not again as long
+/// as one that has it is there; arrays never move once they are shared.
 struct PolygonSoup::Store : std::enable_shared_from_this<PolygonSoup::Store> {
   LargeArray<Vec3> vertices;
-  LargeArray<Facet> facets;   ///< with spare ones at the end
-  std::uint32_t used = 0;     ///< of them
+  LargeArray<Facet> facets;  ///< with spare ones at the end
+  std::uint32_t used = 0;    ///< of them
   LargeArray<Corner> corners;
   LargeArray<FirstCorners> first_corners;
   std::vector<Shell> shells;

@@ -59,8 +59,8 @@ class Sieve {
 
   Glance glance(const FirstCorners& facet) const {
     if (!facet.all) return Glance::other;
-    const auto [x, y, z, size, vertex] = see(facet);
-    const Seen seen{x, y, z, size, vertex};
+    const Seen seen = see(facet);
+    const auto& [x, y, z, size, vertex] = seen;
     for (const Side& side : sides_) {
       const Doubles value = side.m.x * x + side.m.y * y + side.m.z * z;
       if (all((value < -(side.per_length * size)) | seen.is(side.from) | seen.is(side.to))) return Glance::outside;
@@ -80,7 +80,7 @@ class Sieve {
     unsure
   };
 
-  /// Of a facet that is not outside. facing: the side from which it is seen, ±1.
+  /// facing: the side from which it is seen, ±1.
   Verdict judge(const Plane& plane, const FirstCorners& facet, int facing) const {
     if (!facet.all) return Verdict::unsure;
     const Seen seen = see(facet);

@@ -171,8 +171,8 @@ inline bool coincide(const Vec3& x, const ViewPlane& a, const ViewPlane& b) {
   return run_along(*b.c, *b.d) && run_along(*a.c, *b.d) && run_along(*b.c, *a.d);
 }
 
-/// Whether edges of the silhouette coincide. Those that do have one and the same side, so that one component of its unit
-/// normal, known to within 1.1 error / |m| and 4 roundings, sorts them next to each other.
+/// Whether edges of the silhouette coincide. Those that do have one and the same side, so that one component of its
+/// unit normal, known to within 1.1 error / |m| and 4 roundings, sorts them next to each other.
 template <class Real>
 bool has_edges_that_coincide(const Silhouette<Real>& silhouette, const Evaluation& evaluation) {
   const auto& sides = silhouette.cone.sides;

@@ -37,6 +37,10 @@ inline double norm(const Vec3& a) {
 inline Vec3 normalized(const Vec3& a) {
   return (1 / norm(a)) * a;
 }
+/// An order of points, by x, then y, then z; 0 and −0 are the same.
+constexpr bool lexicographically_less(const Vec3& a, const Vec3& b) {
+  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
 inline bool is_finite(const Vec3& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }

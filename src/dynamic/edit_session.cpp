@@ -98,8 +98,9 @@ void EditSession::apply(const Edit& edit) {
   if (options_.method == UpdateMethod::scratch) base_.start_over();
 }
 
-bool EditSession::propagates(const DynamicRadiosity& of) const {
-  return of.strongest().energy > 0 && of.error_bound() > options_.tolerance;
+/// Whether there is something to propagate; strongest: of the unshot energies.
+bool EditSession::propagates(const DynamicRadiosity& of, double strongest) const {
+  return strongest > 0 && of.error_bound() > options_.tolerance;
 }
 
 /// One shot, the one that comes next; false when nothing is left to do.
@@ -117,8 +118,8 @@ bool EditSession::step(DynamicRadiosity& of, SessionWork& work) {
     count(of.gather(), work);
     return true;
   }
-  const bool can_propagate = propagates(of);
   const auto unshot = of.strongest();
+  const bool can_propagate = propagates(of, unshot.energy);
   const auto change = of.strongest_change();
   if (change.energy < 0 && !can_propagate) return false;
   const bool first = options_.strategy == Strategy::redistribute_first && change.energy >= 0 &&
@@ -153,7 +154,7 @@ SessionWork EditSession::work(const Budget& budget) {
   }
   if (temporary && !shown_) open_temporary(*temporary);
   // Whichever end came first: a budget of just so many shots finishes, too.
-  work.finished = solution().pending_changes() == 0 && !propagates(solution());
+  work.finished = solution().pending_changes() == 0 && !propagates(solution(), propagation_left());
   work.seconds = seconds();
   return work;
 }

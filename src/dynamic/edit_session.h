@@ -105,7 +105,7 @@ class EditSession {
  private:
   void change_geometry(DynamicRadiosity& of, std::uint32_t object, const std::string& name);
   DynamicRadiosity& state() { return shown_ ? *shown_ : base_; }
-  bool propagates(const DynamicRadiosity& of) const;
+  bool propagates(const DynamicRadiosity& of, double strongest) const;
   bool step(DynamicRadiosity& of, SessionWork& work);
   std::optional<std::uint32_t> held() const;
   void open_temporary(std::uint32_t object);

@@ -229,7 +229,6 @@ void SceneVersion::choose_samples(const SceneVersion& before, std::uint32_t obje
   }
   std::ranges::sort(patches);
   patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
-  std::vector<std::uint32_t> moved;
   const PatchMesh& mesh = mesh_;
   for (const std::uint32_t p : patches) {
     if (object_of_patch(p) == object) continue;
@@ -240,15 +239,9 @@ void SceneVersion::choose_samples(const SceneVersion& before, std::uint32_t obje
       const Vec3 sample = site.choose(mesh, mesh.elements[e]);
       if (sample == mesh.elements[e].sample) continue;
       mesh_.elements[e].sample = sample;
-      moved.push_back(e);
-    }
-  }
-  for (const std::uint32_t e : moved) {
-    const auto at = std::ranges::lower_bound(resampled_, e, {}, &Resampled::element);
-    if (at != resampled_.end() && at->element == e) {
+      auto at = std::ranges::lower_bound(resampled_, e, {}, &Resampled::element);
+      if (at == resampled_.end() || at->element != e) at = resampled_.insert(at, {e, 0});
       at->serial = serial_;
-    } else {
-      resampled_.insert(at, {e, serial_});
     }
   }
 }

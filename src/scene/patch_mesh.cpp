@@ -26,10 +26,6 @@ constexpr double kNeedle = 0x1p-40;
 /// Room that growing arrays take, at most, for what they hold.
 constexpr double kGrowth = 3;
 
-bool lexicographically_less(const Vec3& a, const Vec3& b) {
-  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-}
-
 /// The point k parts of n along the edge from a to b: the same bits as n − k parts from b to a.
 Vec3 along_edge(const Vec3& a, const Vec3& b, std::uint32_t k, std::uint32_t n) {
   if (k == 0) return a;
@@ -249,7 +245,13 @@ class Mesher {
  public:
   /// polygon_offset: what to add (modulo 2^32) to the number of a surface for that of its polygon.
   Mesher(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options, std::uint32_t polygon_offset = 0)
-      : scene_(scene), soup_(soup), polygon_offset_(polygon_offset), samples_(soup), size_(options.patch_size), small_(options.small_patch), elements_per_edge_(options.elements_per_edge),
+      : scene_(scene),
+        soup_(soup),
+        polygon_offset_(polygon_offset),
+        samples_(soup),
+        size_(options.patch_size),
+        small_(options.small_patch),
+        elements_per_edge_(options.elements_per_edge),
         per_edge_(options.elements_per_edge) {
     if (!(size_ >= 0) || std::isinf(size_)) throw std::invalid_argument("the patch size must be a finite number ≥ 0");
     if (!(small_ >= 0)) throw std::invalid_argument("the area of small patches must be a number ≥ 0");

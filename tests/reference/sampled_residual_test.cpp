@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <functional>
 #include <numeric>
 
 #include "src/form_factor/pair_rows.h"
@@ -40,7 +41,14 @@ class OneReflection {
   }
 
   const PatchMesh& mesh() const { return refined_.mesh(); }
-  std::span<const double> B() const { return B_; }
+
+  /// What the solution is off by, squared, where the floor's true B is known.
+  double missed(const std::function<double(const Vec3&)>& B_on_floor) const {
+    const auto truth = [&](std::uint32_t surface, const Vec3& p) {
+      return surface == 0 ? B_on_floor(p) : surface == 1 ? 1 : 0;
+    };
+    return squares_of(mesh(), kDegree, B_, truth, 6).first;
+  }
 
   std::optional<std::vector<double>> squares(const std::function<bool()>& stop = {}) const {
     std::vector<std::uint32_t> patches(mesh().patches.size());
@@ -58,13 +66,7 @@ class OneReflection {
 TEST(SampledResidual, IsWhatASolutionIsOffByWhereItsPointsSeeIt) {
   for (const double edge : {0.5, 0.65}) {
     const OneReflection solution(half_shadow(edge));
-    const double missed = squares_of(
-                              solution.mesh(), kDegree, solution.B(),
-                              [&](std::uint32_t surface, const Vec3& p) {
-                                return surface == 0 ? half_shadow_B(edge, p.x, p.y) : surface == 1 ? 1 : 0;
-                              },
-                              6)
-                              .first;
+    const double missed = solution.missed([&](const Vec3& p) { return half_shadow_B(edge, p.x, p.y); });
     const auto squares = solution.squares();
     ASSERT_TRUE(squares);
     EXPECT_NEAR((*squares)[0], missed, 0.05 * missed) << edge;
@@ -78,13 +80,7 @@ TEST(SampledResidual, IsHardlyLessInSpotsThatItsPointsDoNotSee) {
   for (int k = 0; k < 8; ++k) {
     const SmallSheet sheet{0.6 + 0.004 * k, 0.3, 0.02, 0.003};
     const OneReflection solution(small_shadow(sheet));
-    const double missed = squares_of(
-                              solution.mesh(), kDegree, solution.B(),
-                              [&](std::uint32_t surface, const Vec3& p) {
-                                return surface == 0 ? small_shadow_B(sheet, p.x, p.y) : surface == 1 ? 1 : 0;
-                              },
-                              6)
-                              .first;
+    const double missed = solution.missed([&](const Vec3& p) { return small_shadow_B(sheet, p.x, p.y); });
     const auto squares = solution.squares();
     ASSERT_TRUE(squares);
     EXPECT_GE((*squares)[0], missed / (1.5 * 1.5)) << sheet.x;
