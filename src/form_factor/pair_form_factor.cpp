@@ -13,6 +13,9 @@ namespace {
 
 /// A pair that could exchange no more than this share of what is needed without anything between is not integrated.
 constexpr double kNegligible = 1e-2;
+/// Each side of a pair is tried with this part of the points at first. Where one stands still, as it does where
+/// outlines differ by roundings all along an edge, the other mostly needs less than that.
+constexpr std::uint64_t kTrial = 8;
 
 /// The farthest that a facet's corners lie off another one's plane; infinite if that is more than the rounding of
 /// coordinates explains.
@@ -125,17 +128,26 @@ PairIntegrator::Exchanged PairIntegrator::exchange(const ExchangeScene::Piece& a
   ObstructedExchange back(scene_.soup(), b.source, a.source, items_);
   ObstructedExchange *one = &there, *other = &back;
   if (back.events() < there.events()) std::swap(one, other);
-  one->refine(view_, needed, options.points, options.stop);
-  Exchanged result{one->integral(), one->error(), PairClass::partial};
-  points += one->points();
-  // What the two sides say of each other is the best judge of their errors; a side that has much trouble, as beside a
-  // contact, leaves it to the other.
-  if (options.both_ways || one->error() > needed) {
-    other->refine(view_, needed, options.points, options.stop);
-    points += other->points();
+  const auto refine = [&](ObstructedExchange& side, std::uint64_t most) {
+    side.refine(view_, needed, most, options.stop);
+    return side.error() <= needed;
+  };
+  // A side that has much trouble, as beside a contact, leaves it to the other; where both have, it is that of less.
+  const bool at_once = refine(*one, options.points / kTrial);
+  if (!at_once && !refine(*other, options.points / kTrial)) {
     if (other->error() < one->error()) std::swap(one, other);
+    if (!refine(*one, options.points)) refine(*other, options.points);
+  }
+  if (options.both_ways) {
+    refine(*one, options.points);
+    refine(*other, options.points);
+  }
+  points += one->points() + other->points();
+  if (other->points() > 0 && other->error() < one->error()) std::swap(one, other);
+  Exchanged result{one->integral(), one->error(), PairClass::partial};
+  // What the two sides say of each other is the best judge of their errors.
+  if (other->points() > 0) {
     const double apart = std::fabs(there.integral() - back.integral());
-    result = {one->integral(), one->error(), PairClass::partial};
     if (apart > there.error() + back.error()) result.error = apart;
   }
   result.integral = std::clamp(result.integral, 0.0, unobstructed);
