@@ -32,14 +32,6 @@ std::uint64_t id_of(const ViewPlane& side) {
 /// [rad] Shorter stretches of edges come and go by rounding; of others the ends are known to a sixteenth of that (answer).
 constexpr double kShortest = 1e-10;
 
-/// Whether an edge is seen along the horizon, where which of the two bounds is a matter of rounding.
-template <class Real>
-bool is_level(const ConeSide<Real>& side, const Vec3& normal) {
-  constexpr double kLevel = 1e-9;  // sine
-  const Vec<Real> n{Real(normal.x), Real(normal.y), Real(normal.z)};
-  return norm(cross(side.m, n)) <= kLevel * side.length * norm(n);
-}
-
 /// Ends of a stretch, as unit vectors from the point of view.
 using Ends = std::pair<Vec3, Vec3>;
 Ends ends_of(const Arc<double>& arc) {
@@ -51,18 +43,28 @@ Ends ends_of(const Arc<double>& arc) {
   return {direction(arc.t0), direction(arc.t1)};
 }
 
-/// How many chains stretches form that follow each other end to end.
-std::uint64_t chains(std::span<const Ends> stretches) {
-  std::uint64_t joints = 0;
+/// Whether a stretch lies along the horizon, where which edge bounds is a matter of rounding, or in the sliver above it
+/// that a gap of rounding opens beside an edge in contact.
+bool is_level(const Ends& ends, const Vec3& normal) {
+  constexpr double kLevel = 1e-9;  // sine
+  const double highest = kLevel * norm(normal);
+  return std::fabs(dot(ends.first, normal)) <= highest && std::fabs(dot(ends.second, normal)) <= highest;
+}
+
+/// How many chains stretches form that follow each other end to end, each from its first to its second end. Those that
+/// go round a sliver end where they began, and are none.
+std::int64_t chains(std::span<const Ends> stretches) {
   const auto meet = [](const Vec3& p, const Vec3& q) { return norm(p - q) <= kShortest; };
+  std::int64_t begun = 0;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const auto& [a, b] = stretches[i];
-      const auto& [c, d] = stretches[j];
-      joints += meet(a, c) || meet(a, d) || meet(b, c) || meet(b, d);
-    }
+    const Vec3& p = stretches[i].first;
+    const auto begins = [&](const Ends& s) { return meet(s.first, p); };
+    const auto ends = [&](const Ends& s) { return meet(s.second, p); };
+    if (std::ranges::any_of(stretches.first(i), begins)) continue;  // counted there
+    begun +=
+        std::max<std::int64_t>(0, std::ranges::count_if(stretches, begins) - std::ranges::count_if(stretches, ends));
   }
-  return stretches.size() - joints;
+  return begun;
 }
 
 /// Two points of the line in which planes meet, given by a point and a normal each.
@@ -402,14 +404,15 @@ PointFormFactor Viewpoint::State::sum(PointFormFactor result) {
     const Real angle = lambert.add(arc);
     if constexpr (std::is_same_v<Real, double>) {
       if (!tells_outline || !(angle > kShortest)) return;
-      if (is_level(*arc.side, view.receiver().normal)) {
-        level.push_back(ends_of(arc));
+      if (const Ends ends = ends_of(arc); is_level(ends, view.receiver().normal)) {
+        const bool forth = (arc.cone->turn > 0) == arc.of_source;
+        level.push_back(forth ? ends : Ends{ends.second, ends.first});
       } else {
         outline += id_of(arc.side->exact);
       }
     }
   });
-  if (!level.empty()) outline += kHorizon * chains(level);
+  if (!level.empty()) outline += kHorizon * static_cast<std::uint64_t>(chains(level));
   result.visibility = r.occluder_count() == 0 ? Visibility::open
                       : lambert.arcs() == 0   ? Visibility::blocked
                                               : Visibility::partial;
@@ -547,7 +550,8 @@ std::vector<SeenEdge> Viewpoint::seen_edges() {
   s.region.for_each_arc([&](const Arc<double>& arc) {
     const ViewPlane& side = arc.side->exact;
     SeenEdge edge;
-    edge.id = is_level(*arc.side, s.view.receiver().normal) ? kHorizon : id_of(side);
+    const Ends ends = ends_of(arc);
+    edge.id = is_level(ends, s.view.receiver().normal) ? kHorizon : id_of(side);
     if (side.kind == ViewPlane::Kind::edge) {
       edge.a = *side.c;
       edge.b = *side.d;
@@ -557,7 +561,7 @@ std::vector<SeenEdge> Viewpoint::seen_edges() {
       const PlanePoints& T = *side.T;
       std::tie(edge.a, edge.b) = line_of(plane.origin, plane.normal, *T.a, cross(*T.b - *T.a, *T.c - *T.a));
     }
-    std::tie(edge.from, edge.to) = ends_of(arc);
+    std::tie(edge.from, edge.to) = ends;
     if (norm(edge.to - edge.from) > kShortest) edges.push_back(edge);
   });
   return edges;

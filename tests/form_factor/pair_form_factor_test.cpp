@@ -4,7 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
 #include "tests/form_factor/closed_forms.h"
+#include "tests/geometry/solids.h"
 
 namespace exitance {
 namespace {
@@ -66,6 +72,37 @@ TEST(PairFormFactor, OneConvexBlockerTakesThreeHundredPoints) {
   EXPECT_LE(f.F_error, 1e-12);
   EXPECT_LE(f.points, 320u);
   EXPECT_NEAR(f.F, static_cast<double>(kShapiroBlocked), 1e-15);
+}
+
+/// A box in a corner of a room, turned by 30 degrees about the vertical so that two of its edges touch walls. Where all
+/// is turned, gaps of rounding open beside these edges, in which slivers of the floor are seen.
+TEST(PairFormFactor, EdgesInContactCostNotMuchMoreWhereRoundingPartsThem) {
+  const double c = std::sqrt(0.75), s = 0.5;
+  const auto prism_over = [](const std::array<Vec3, 4>& base, double height, bool outwards) {
+    const auto top = [&](std::size_t k) { return base[k % 4] + Vec3{0, 0, height}; };
+    std::vector<Polygon> faces{{{base[3], base[2], base[1], base[0]}, {}}, {{top(0), top(1), top(2), top(3)}, {}}};
+    for (std::size_t k = 0; k < 4; ++k) faces.push_back({{base[k], base[(k + 1) % 4], top(k + 1), top(k)}, {}});
+    if (!outwards) {
+      for (Polygon& face : faces) std::ranges::reverse(face.outer);
+    }
+    return faces;
+  };
+  std::vector<Polygon> upright = prism_over({{{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}}}, 3, false);
+  for (const Polygon& face : prism_over({{{s, 0, 0}, {s + c, s, 0}, {c, s + c, 0}, {0, c, 0}}}, 1, true)) {
+    upright.push_back(face);
+  }
+  std::vector<Polygon> rounded = upright;
+  for (Polygon& face : rounded) std::ranges::transform(face.outer, face.outer.begin(), turned);
+  const auto floor_to_wall = [](const std::vector<Polygon>& polygons) {
+    const PolygonSoup soup(polygons);
+    const ExchangeScene scene(soup);
+    return PairIntegrator(scene).form_factor(0, 5, {});
+  };
+  const PairFormFactor a = floor_to_wall(upright), b = floor_to_wall(rounded);
+  EXPECT_TRUE(a.reached);
+  EXPECT_TRUE(b.reached);
+  EXPECT_NEAR(a.F, b.F, a.F_error + b.F_error + 1e-15);
+  EXPECT_LE(b.points, 2 * a.points);
 }
 
 /// A thousand edges may hide events between a cell's points: looking for those counts as work, too.
