@@ -202,7 +202,7 @@ int run(int argc, char** argv) {
     Followed followed(place, table);
     for (const Case& edited : place.cases) followed.follow(edited);
   }
-  if (wanted.writes()) table.write(wanted.folder() / "results.csv");
+  if (wanted.writes()) table.write(wanted.folder() / "summary.csv");
   return wanted.check(table, 3, 0.02,
                       {"cpu_seconds_to_5_percent", "cpu_seconds_to_5_percent_of_room", "cpu_seconds_to_the_end",
                        "error_after_5_ms", "error_after_50_ms", "error_after_500_ms", "longest_shot_ms"});

@@ -338,7 +338,7 @@ class Dynamic {
     if (images_) draw(given, session, time, B);
     summary_ += fmt::format(
         "frame {:3}  {:>9.3f} s  {:5} + {:5} shots  error {}  of the 1 % {}  {}\n", frames_.size(), work.seconds,
-        work.redistributions, work.propagations, error ? fmt::format("{:.3g}", error->all) : "-",
+        work.redistributions + work.gatherings, work.propagations, error ? fmt::format("{:.3g}", error->all) : "-",
         error ? fmt::format("{:.3g}", error->worst_1_percent) : "-", fmt::format("{}", fmt::join(edits, ", ")));
     frames_.push_back(std::move(frame));
     keep_frames();
