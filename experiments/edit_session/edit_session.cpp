@@ -48,10 +48,25 @@ Drag drag(bool reduced) {
   return drag;
 }
 
-enum class Way { log, no_log, selected };
+enum class Way {
+  log,
+  log_shot,  ///< what the cube receives is shot to it by others, not gathered
+  no_log,
+  selected
+};
 
 const char* name_of(Way way) {
-  return way == Way::log ? "log" : way == Way::no_log ? "no log" : "selected";
+  switch (way) {
+    case Way::log:
+      return "log";
+    case Way::log_shot:
+      return "log and shots alone";
+    case Way::no_log:
+      return "no log";
+    case Way::selected:
+      break;
+  }
+  return "selected";
 }
 
 class Frames {
@@ -70,6 +85,7 @@ class Frames {
   void run(Way way, std::uint64_t budget_shots, CsvTable& table, CsvTable& summary, Plot& plot) {
     SessionOptions options = options_;
     options.log = way != Way::no_log;
+    options.object_terms = way == Way::log_shot ? ObjectTerms::shot : ObjectTerms::gathered;
     EditSession session(first_, options);
     if (way == Way::selected) {
       Edit first = drag_.place(1);
@@ -92,8 +108,8 @@ class Frames {
       const ConvergenceError error = error_of(k);
       sum += error.all;
       table.rows.push_back({name_of(way), fmt::format("{}", budget_shots), fmt::format("{}", k), digits(error.all),
-                            digits(error.worst_1_percent), fmt::format("{}", work.redistributions),
-                            fmt::format("{}", work.propagations),
+                            digits(error.worst_1_percent), fmt::format("{}", work.gatherings),
+                            fmt::format("{}", work.redistributions), fmt::format("{}", work.propagations),
                             fmt::format("{}", session.solution().pending_changes())});
       series.points.emplace_back(k, error.all);
     }
@@ -103,7 +119,7 @@ class Frames {
     const SessionWork rest = session.work({});
     const ConvergenceError left = error_of(drag_.frames);
     summary.rows.push_back({name_of(way), fmt::format("{}", budget_shots), digits(sum / drag_.frames),
-                            fmt::format("{}", entries), fmt::format("{}", rest.redistributions + rest.propagations),
+                            fmt::format("{}", entries), fmt::format("{}", rest.shots()),
                             fmt::format("{:.3g}", left.all), fmt::format("{:.3g}", seconds / drag_.frames),
                             fmt::format("{:.3g}", clock.cpu_seconds())});
     fmt::print(stderr, "{}: mean error {:.3g}, {:.3g} when worked off\n", series.name, sum / drag_.frames, left.all);
@@ -127,8 +143,8 @@ int run(int argc, char** argv) {
   options.mesh = dragged.mesh;
   options.tolerance = 1e-9;
   Frames frames(dragged, options);
-  CsvTable table{{"way", "shots_a_frame", "frame", "error", "error_worst_1_percent", "redistributions", "propagations",
-                  "log_entries"},
+  CsvTable table{{"way", "shots_a_frame", "frame", "error", "error_worst_1_percent", "gathered_patches",
+                  "redistributions", "propagations", "log_entries"},
                  {}};
   CsvTable summary{{"way", "shots_a_frame", "mean_error", "log_entries_at_the_end", "shots_to_work_off",
                     "error_worked_off", "cpu_seconds_a_frame", "cpu_seconds_to_work_off"},
@@ -137,7 +153,8 @@ int run(int argc, char** argv) {
   plot.note = plot_note();
   for (const std::uint64_t shots :
        wanted.reduced() ? std::vector<std::uint64_t>{5, 50} : std::vector<std::uint64_t>{10, 50, 250}) {
-    for (const Way way : {Way::log, Way::no_log, Way::selected}) frames.run(way, shots, table, summary, plot);
+    for (const Way way : {Way::log, Way::log_shot, Way::no_log, Way::selected})
+      frames.run(way, shots, table, summary, plot);
   }
   if (wanted.writes()) {
     const std::filesystem::path folder = wanted.folder();

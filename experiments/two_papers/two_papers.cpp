@@ -201,6 +201,7 @@ class Contest {
     SessionOptions options;
     options.mesh = mesh;
     options.tolerance = 1e-5;
+    options.object_terms = ObjectTerms::shot;  // as the paper does
     const RunClock whole;
     EditSession before(scene_.given.scene, options);
     before.work({});

@@ -42,6 +42,27 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Which methods look at an option. What is not here has a meaning for all.
+using Methods = std::vector<std::string>;
+const Methods kByShots = {"scratch", "restart", "redistribute"}, kByLinks = {"rebuild", "direct", "hvt", "hvt-peu"};
+const std::vector<std::pair<const char*, Methods>> kMethodsOfOptions = {
+    {"--strategy", {"restart", "redistribute"}},
+    {"--threshold", {"restart", "redistribute"}},
+    {"--importance", {"redistribute"}},
+    {"--importance-points", {"redistribute"}},
+    {"--object-terms", {"redistribute"}},
+    {"--no-log", {"restart", "redistribute"}},
+    {"--budget-shots", kByShots},
+    {"--budget-ms", {"scratch", "restart", "redistribute", "direct", "hvt", "hvt-peu"}},
+    {"--replay", kByShots},
+    {"--references", kByShots},
+    {"--elements", kByShots},
+    {"--eps", kByLinks},
+    {"--eps1", kByLinks},
+    {"--min-area", kByLinks},
+    {"--link-points", kByLinks},
+    {"--b-eps", {"hvt-peu"}}};
+
 class Dynamic {
  public:
   explicit Dynamic(CLI::App& verb) : verb_(verb) {
@@ -66,8 +87,8 @@ class Dynamic {
         ->check(whole_number_between(1, 1000))
         ->capture_default_str();
     verb.add_option("--object-terms", object_terms_,
-                    "How patches of the edited object get what is redistributed to them: shot by the others, or "
-                    "gathered at once")
+                    "How patches of the edited object get what is redistributed to them: gathered by each at once, or "
+                    "shot by the others, as in Figure 2 of George et al.")
         ->check(CLI::IsMember({"shot", "gathered"}))
         ->capture_default_str();
     links_.add_to(verb);
@@ -83,10 +104,14 @@ class Dynamic {
     verb.add_flag(
         "!--no-log", options_.log,
         "Forget what an edit interrupts: it is never redistributed, and the error that it leaves has no bound");
-    verb.add_flag("--work-off", work_off_, "After the last event one more frame that works off all that was left");
-    verb.add_flag("!--no-reference", reference_, "Leave out the converged references, and with them the errors");
+    verb.add_flag(
+        "--work-off", work_off_,
+        "After the last event one more frame that works off all that was left; by links, where something was");
+    CLI::Option* no_reference =
+        verb.add_flag("!--no-reference", reference_, "Leave out the converged references, and with them the errors");
     verb.add_option("--references", reference_file_,
-                    "File (.h5) that keeps the converged references, for other runs of the same frames");
+                    "File (.h5) that keeps the converged references, for other runs of the same frames")
+        ->excludes(no_reference);
     memory_limit_.add_to(verb);
     verb.add_flag("!--no-images", images_, "Leave out pictures and VTP files");
     verb.add_option("--image-size", image_size_, "Width and height of the pictures in pixels")
@@ -105,8 +130,12 @@ class Dynamic {
     verb.footer(
         "frames.json is a list: frame 0 is the scene before the first event, each other one follows the events of one\n"
         "time. error and error_worst_1_percent are eq. 7 of George et al. (1990) over elements, against the converged\n"
-        "solution of that frame; null where there is no reference. error_bound is null while a change is in the log\n"
-        "and once --no-log has forgotten one: finished then says that nothing is left to do, not that B is right.\n"
+        "solution of that frame; null where there is no reference. They are relative to the radiosity that the "
+        "elements\n"
+        "should have: where those that change most go dark, as in a new shadow, error_worst_1_percent can exceed 1.\n"
+        "error_bound is null while a change is in the log and once --no-log has forgotten one: finished then says "
+        "that\n"
+        "nothing is left to do, not that B is right.\n"
         "Each frame is written when it is done; Ctrl-C ends with those so far, exit code 4.\n"
         "Methods by links link all pairs of patches: clusters of patches are for solve --method hierarchical.");
   }
@@ -117,6 +146,7 @@ class Dynamic {
         threads_ ? *threads_ : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     catch_interrupts();
+    refuse_what_is_not_used();
     if (budget_shots_.has_value() + budget_ms_.has_value() + !replay_.empty() > 1)
       throw CLI::ValidationError("--budget-shots, --budget-ms, --replay", "only one of them can be given");
     const DynamicScene given = read_dynamic_scene(path_, Emission::exitance);
@@ -125,7 +155,6 @@ class Dynamic {
     read_replay();
     results_.emplace(folder_);
     if (const auto by_links = link_method_named(method_)) {
-      refuse_shots_only();
       LinkFrameOptions how;
       how.links =
           links_.chosen(given, patch_size_->count() > 0 ? std::optional(options_.mesh.patch_size) : std::nullopt);
@@ -147,7 +176,6 @@ class Dynamic {
       partial_ = follow_links(given, how, results_->draft()) == LinksEnd::unfinished || partial_;
       return finish();
     }
-    links_.refuse_any("rebuild, direct, hvt or hvt-peu");
     set_options(given.scene);
 
     store_.emplace(reference_ ? reference_file_ : "");
@@ -169,17 +197,14 @@ class Dynamic {
   }
 
  private:
-  /// What has no meaning for links.
-  void refuse_shots_only() const {
-    for (const char* name : {"--strategy", "--threshold", "--importance", "--importance-points", "--object-terms",
-                             "--budget-shots", "--replay", "--no-log", "--references", "--elements"}) {
-      if (verb_.get_option(name)->count() > 0)
-        throw CLI::ValidationError(name, "needs --method scratch, restart or redistribute");
+  /// What a method would not look at is refused.
+  void refuse_what_is_not_used() const {
+    for (const auto& [option, methods] : kMethodsOfOptions) {
+      if (verb_.get_option(option)->count() == 0 || std::ranges::count(methods, method_) > 0) continue;
+      throw CLI::ValidationError(option, fmt::format("needs --method {}", fmt::join(methods, ", ")));
     }
-    for (const char* name : {"--budget-ms", "--work-off"}) {
-      if (method_ == "rebuild" && verb_.get_option(name)->count() > 0)
-        throw CLI::ValidationError(name, "has no meaning for --method rebuild, which does all or nothing");
-    }
+    if (verb_.get_option("--importance-points")->count() > 0 && importance_ != "estimated")
+      throw CLI::ValidationError("--importance-points", "needs --importance estimated");
   }
 
   /// Whatever happens later, the frames so far are there: first their files, then the list that names them.
@@ -313,7 +338,7 @@ class Dynamic {
     if (images_) draw(given, session, time, B);
     summary_ += fmt::format(
         "frame {:3}  {:>9.3f} s  {:5} + {:5} shots  error {}  of the 1 % {}  {}\n", frames_.size(), work.seconds,
-        work.redistributions, work.propagations, error ? fmt::format("{:.3g}", error->all) : "-",
+        work.redistributions + work.gatherings, work.propagations, error ? fmt::format("{:.3g}", error->all) : "-",
         error ? fmt::format("{:.3g}", error->worst_1_percent) : "-", fmt::format("{}", fmt::join(edits, ", ")));
     frames_.push_back(std::move(frame));
     keep_frames();
@@ -331,7 +356,7 @@ class Dynamic {
   SessionOptions options_;
   LinkSettings links_;
   CLI::Option *patch_size_ = nullptr, *elements_ = nullptr;
-  std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", object_terms_ = "shot",
+  std::string path_, method_ = "redistribute", strategy_ = "1", importance_ = "estimated", object_terms_ = "gathered",
                      replay_, reference_file_, folder_;
   MemoryLimit memory_limit_;
   std::uint32_t image_size_ = 800;

@@ -53,14 +53,15 @@ void DynamicRadiosity::set_materials(const Scene& scene, std::uint32_t object) {
 
 /// By shots and by gathering.
 double DynamicRadiosity::received(std::uint32_t element, std::uint32_t band) const {
-  const CompensatedSum& shot = H_[std::size_t{element} * bands_ + band];
-  const std::uint32_t first = changed_last_ ? version().slot(*changed_last_).element_first : 0;
-  const std::size_t at = std::size_t{element - first} * bands_ + band;
-  if (element < first || at >= G_.size()) return shot.value();
-  CompensatedSum both = shot;
-  both.add(G_[at].high());
-  both.add(G_[at].low());
-  return both.value();
+  CompensatedSum sum = H_[std::size_t{element} * bands_ + band];
+  for (const Gathering& gathering : gatherings_) {
+    const std::uint32_t first = version().slot(gathering.object).element_first;
+    const std::size_t at = std::size_t{element - first} * bands_ + band;
+    if (element < first || at >= gathering.G.size()) continue;
+    sum.add(gathering.G[at].high());
+    sum.add(gathering.G[at].low());
+  }
+  return sum.value();
 }
 
 /// B and ΔB of a patch from what its elements have received.
@@ -131,17 +132,21 @@ void DynamicRadiosity::drop_empty_layers() {
 
 /// What was gathered and not shot is forgotten, and who gathers.
 void DynamicRadiosity::drop_gathered() {
-  G_.clear();
-  gathered_rows_ = {};
-  const std::optional<std::uint32_t> object = std::exchange(changed_last_, std::nullopt);
-  if (!object) return;
-  const std::uint32_t first = version().slot(*object).patch_first, count = std::exchange(gathered_patches_, 0);
-  for (std::uint32_t p = first; p < first + count; ++p) refresh(p);
+  for (const Gathering& gathering : std::exchange(gatherings_, {})) {
+    const std::uint32_t first = version().slot(gathering.object).patch_first;
+    for (std::uint32_t p = first; p < first + gathering.patches; ++p) refresh(p);
+  }
+}
+
+/// Rows of the present version, of the object that was changed last, as far as they are known.
+const ObjectRows& DynamicRadiosity::present_rows() const {
+  static const ObjectRows none;
+  return !gatherings_.empty() && is_present(gatherings_.back()) ? gatherings_.back().rows : none;
 }
 
 void DynamicRadiosity::change_geometry(std::shared_ptr<const SceneVersion> next, const Scene& scene,
                                        std::uint32_t object, const std::string& name) {
-  drop_gathered();
+  std::erase_if(gatherings_, [&](const Gathering& g) { return g.object == object || g.patches == 0; });
   // What the object received where it was is gone with it.
   const ObjectSlot was = version().slot(object);
   std::fill_n(H_.begin() + static_cast<std::ptrdiff_t>(std::size_t{was.element_first} * bands_),
@@ -158,17 +163,17 @@ void DynamicRadiosity::change_geometry(std::shared_ptr<const SceneVersion> next,
     refresh(p);
   }
   set_materials(scene, object);
-  if (version().slot(object).present) changed_last_ = object;
+  const ObjectSlot& is = version().slot(object);
+  if (is.present)
+    gatherings_.push_back({object, shared_version(), ObjectRows(is.element_first, is.element_count), 0, {}});
 }
 
 void DynamicRadiosity::forget_changes() {
   has_forgotten_ = has_forgotten_ || pending_changes() > 0;
-  for (std::size_t k = 0; k < G_.size(); ++k) {
-    CompensatedSum& H = H_[std::size_t{version().slot(*changed_last_).element_first} * bands_ + k];
-    H.add(G_[k].high());
-    H.add(G_[k].low());
+  for (Gathering& gathering : gatherings_) {
+    CompensatedSum* H = H_.data() + std::size_t{version().slot(gathering.object).element_first} * bands_;
+    for (const CompensatedSum& G : std::exchange(gathering.G, {})) (H++)->add(G);
   }
-  G_.clear();
   for (std::size_t k = 0; k + 1 < layers_.size(); ++k) {
     for (std::uint32_t p = 0; p < version().patches(); ++p) {
       const std::uint32_t object = version().object_of_patch(p);
@@ -214,7 +219,7 @@ std::shared_ptr<const FormFactorColumn> DynamicRadiosity::present_column(std::ui
   if (column && since(column->version).keeps(patch)) {
     const VersionDifference& difference = since(column->version);
     const auto changes =
-        difference.column(patch, VersionDifference::Search::shadow_volumes, column.get(), gathered_rows_, work);
+        difference.column(patch, VersionDifference::Search::shadow_volumes, column.get(), present_rows(), work);
     column = std::make_shared<const FormFactorColumn>(changed_column(*column, difference, changes));
   } else {
     column = std::make_shared<const FormFactorColumn>(make_column(shared_version(), patch, work.visibility_tests));
@@ -250,9 +255,11 @@ DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t pat
   auto known = columns_.find(patch);
   if (known && known->version != layer.version) known.reset();
   const std::vector<FormFactorChange> changes =
-      difference.column(patch, search, known.get(), gathered_rows_, shot.work);
+      difference.column(patch, search, known.get(), present_rows(), shot.work);
   if (known && difference.keeps(patch))
     columns_.put(patch, std::make_shared<const FormFactorColumn>(changed_column(*known, difference, changes)));
+  std::vector<std::uint32_t> touched;
+  take_from_gathered(layer, patch, touched);
   std::vector<double> high(bands_), low(bands_);
   for (std::uint32_t b = 0; b < bands_; ++b) {
     CompensatedSum& past = layer.shot[std::size_t{patch} * bands_ + b];
@@ -260,20 +267,13 @@ DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t pat
     low[b] = past.low();
     past = {};
   }
-  std::vector<std::uint32_t> touched;
   for (const FormFactorChange& c : changes) {
     // Both by themselves: H takes back to the last digit what it was given.
     for (const double* amount : {high.data(), low.data()}) {
       receive(c.element, -c.before, amount);
       receive(c.element, c.after, amount);
     }
-    if (gathered_rows_.has(c.element)) {
-      CompensatedSum* G = &G_[std::size_t{c.element - version().slot(*changed_last_).element_first} * bands_];
-      for (std::uint32_t b = 0; b < bands_; ++b) {
-        for (const double amount : {high[b], low[b]}) G[b].add_product(-c.after, amount);
-      }
-      continue;
-    }
+    if (present_rows().has(c.element)) continue;  // G loses the same
     touched.push_back(c.element);
     const std::size_t p = std::size_t{version().mesh().elements[c.element].patch} * bands_;
     for (std::uint32_t b = 0; b < bands_; ++b)
@@ -287,6 +287,7 @@ DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t pat
       now.add(low[b]);
     }
   }
+  std::ranges::sort(touched);
   refresh_patches_of(touched);
   refresh(patch);
   drop_empty_layers();
@@ -294,17 +295,16 @@ DynamicShot DynamicRadiosity::redistribute(std::size_t change, std::uint32_t pat
   return shot;
 }
 
-bool DynamicRadiosity::can_gather() const {
-  return pending_changes() > 0 && changed_last_ && gathered_patches_ < version().slot(*changed_last_).patch_count;
+std::uint32_t DynamicRadiosity::patches_to_gather() const {
+  if (pending_changes() == 0 || gatherings_.empty() || !is_present(gatherings_.back())) return 0;
+  return version().slot(gatherings_.back().object).patch_count - gatherings_.back().patches;
 }
 
 DynamicShot DynamicRadiosity::gather() {
-  const ObjectSlot& slot = version().slot(*changed_last_);
-  if (G_.empty()) {
-    G_.resize(std::size_t{slot.element_count} * bands_);
-    gathered_rows_ = ObjectRows(slot.element_first, slot.element_count);
-  }
-  DynamicShot shot{DynamicShot::Kind::gathering, slot.patch_first + gathered_patches_++, 0, {}};
+  Gathering& gathering = gatherings_.back();
+  const ObjectSlot& slot = version().slot(gathering.object);
+  gathering.G.resize(std::size_t{slot.element_count} * bands_);
+  DynamicShot shot{DynamicShot::Kind::gathering, slot.patch_first + gathering.patches++, 0, {}};
   const Patch& patch = version().mesh().patches[shot.patch];
   std::vector<const VersionDifference*> since_layer;
   for (std::size_t k = 0; k + 1 < layers_.size(); ++k) since_layer.push_back(&since(layers_[k].version));
@@ -312,7 +312,7 @@ DynamicShot DynamicRadiosity::gather() {
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, patch.element_count, 1), [&](const auto& some) {
     for (std::uint32_t k = some.begin(); k < some.end(); ++k) {
       rows[k] = version().row(patch.element_first + k);
-      CompensatedSum* G = &G_[std::size_t{patch.element_first + k - slot.element_first} * bands_];
+      CompensatedSum* G = &gathering.G[std::size_t{patch.element_first + k - slot.element_first} * bands_];
       for (std::size_t layer = 0; layer < since_layer.size(); ++layer) {
         for (std::size_t i = 0; i < rows[k].column.size(); ++i) {
           const std::uint32_t from = rows[k].column[i];
@@ -330,12 +330,35 @@ DynamicShot DynamicRadiosity::gather() {
     shot.work.visibility_tests += rows[k].column.size();
     for (std::uint32_t b = 0; b < bands_; ++b) {
       shot.power += weights_[b] * version().mesh().elements[e].area * rho_[std::size_t{shot.patch} * bands_ + b] *
-                    std::fabs(G_[std::size_t{e - slot.element_first} * bands_ + b].value());
+                    std::fabs(gathering.G[std::size_t{e - slot.element_first} * bands_ + b].value());
     }
-    gathered_rows_.put(e, std::move(rows[k]));
+    gathering.rows.put(e, std::move(rows[k]));
   }
   refresh(shot.patch);
   return shot;
+}
+
+/// What a patch shot in an older version is about to be redistributed: it counts as gathered no longer. Appends to
+/// `touched` the elements for which it did by form factors of another version than the present one: of these, what the
+/// redistribution shot brings need not be the same.
+void DynamicRadiosity::take_from_gathered(const Layer& layer, std::uint32_t patch,
+                                          std::vector<std::uint32_t>& touched) {
+  const std::uint32_t object = layer.version->object_of_patch(patch);
+  for (Gathering& gathering : gatherings_) {
+    const SceneVersion& then = *gathering.version;
+    if (layer.version->serial() >= then.serial() || !then.same_in(*layer.version, object)) continue;
+    const ObjectSlot& slot = version().slot(gathering.object);
+    for (std::uint32_t e = slot.element_first; e < slot.element_first + slot.element_count; ++e) {
+      const double F = gathering.rows.has(e) ? gathering.rows.F(e, patch) : 0;
+      if (F == 0) continue;
+      for (std::uint32_t b = 0; b < bands_; ++b) {
+        const CompensatedSum& past = layer.shot[std::size_t{patch} * bands_ + b];
+        CompensatedSum& G = gathering.G[std::size_t{e - slot.element_first} * bands_ + b];
+        for (const double amount : {past.high(), past.low()}) G.add_product(-F, amount);
+      }
+      if (!is_present(gathering)) touched.push_back(e);
+    }
+  }
 }
 
 void DynamicRadiosity::set_importance(const ImportanceOptions& options) {
@@ -396,7 +419,7 @@ DynamicRadiosity::Strongest DynamicRadiosity::strongest_of(std::uint32_t object)
 std::vector<double> DynamicRadiosity::importance_of(const Layer& layer, const VersionDifference& difference) const {
   switch (importance_.kind) {
     case ImportanceOptions::Kind::exact:
-      return exact_importance(difference, gathered_rows_);
+      return exact_importance(difference, present_rows());
     case ImportanceOptions::Kind::estimated: {
       std::vector<std::uint32_t> have_shot;
       for (std::uint32_t p = 0; p < difference.before().patches(); ++p) {
@@ -423,7 +446,13 @@ DynamicRadiosity::StrongestChange DynamicRadiosity::strongest_change() {
     for (std::uint32_t p = 0; p < version().patches(); ++p) {
       if (!has_to_redistribute(k, p)) continue;
       const double energy = redistribution_energy(k, p);
-      if (energy > found.energy) found = {k, p, energy};
+      if (version().object_of_patch(p) != SceneVersion::kVoid &&
+          version().same_in(*layers_[k].version, version().object_of_patch(p)))
+        found.of_all += energy;
+      if (energy <= found.energy) continue;
+      found.change = k;
+      found.patch = p;
+      found.energy = energy;
     }
   }
   return found;

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,11 +61,12 @@ struct PendingChange {
 /// elements begin anew. Where the paper's text shoots ρ_j F_ij^Δt B_j, eq. 5 needs ρ_i; where Figure 2 multiplies F^Δt,
 /// which is negative in a shadow, by −1, it means its magnitude.
 ///
-/// G_i is 0 but for elements of the object that was changed last. They were not there, or elsewhere, when the older S
-/// were shot, so that their R_i are all that they get of it: Σ_v<now Σ_j F_ij^now S_j^v. It can be shot to them by each
-/// patch (Figure 2), or gathered, one row of form factors an element (section "The redistribution algorithm"): G_i is
-/// what has been gathered and not yet been shot. A redistribution shot then only turns it into H_i; a new change of
-/// geometry drops it.
+/// G_i is 0 but for elements of objects that were changed and have gathered. When they came there, the older S had been
+/// shot without them, so that their R_i are all that they get of it: Σ_v Σ_j F_ij S_j^v, v of the versions before. It
+/// can be shot to them by each patch (Figure 2), or gathered, one row of form factors an element (section "The
+/// redistribution algorithm"): G_i is what has been gathered and not yet been shot, by the form factors of the version
+/// in which it was. A redistribution shot then only turns it into H_i, by those of the present one. It lasts until the
+/// object itself changes.
 ///
 /// A propagation shot takes the patch's column of form factors as it was kept, brought to the present version by what
 /// has changed of it since, or computes it.
@@ -104,9 +104,10 @@ class DynamicRadiosity {
   /// Redistributes what a patch shot in an older version. REQUIRES: change < pending_changes().
   DynamicShot redistribute(std::size_t change, std::uint32_t patch, VersionDifference::Search search);
 
-  /// Whether a patch of the object that was changed last can still gather what is to be redistributed to it.
-  bool can_gather() const;
-  /// The next of them does. REQUIRES: can_gather().
+  /// Whether a patch of the object that was changed last can still gather what is to be redistributed to it: 0 when
+  /// none can, else how many.
+  std::uint32_t patches_to_gather() const;
+  /// The next of them does. REQUIRES: patches_to_gather() > 0.
   DynamicShot gather();
 
   /// The oldest first; all patches of a change have been moved when it is gone.
@@ -133,6 +134,7 @@ class DynamicRadiosity {
     std::size_t change = 0;
     std::uint32_t patch = 0;
     double energy = -1;
+    double of_all = 0;  ///< the sum over all that are still there, of all changes
   };
   StrongestChange strongest_change();
 
@@ -157,7 +159,18 @@ class DynamicRadiosity {
     std::shared_ptr<const std::vector<double>> importance;  ///< by patch; of all but the present one
   };
 
+  /// What the patches of an object have gathered since it changed last.
+  struct Gathering {
+    std::uint32_t object;
+    std::shared_ptr<const SceneVersion> version;  ///< that it came with, which its rows are of
+    ObjectRows rows;                              ///< of its elements
+    std::uint32_t patches;                        ///< the first of its, which have gathered
+    std::vector<CompensatedSum> G;                ///< by element of the object and band
+  };
+
   void fit_arrays();
+  bool is_present(const Gathering& gathering) const { return gathering.version == shared_version(); }
+  const ObjectRows& present_rows() const;
   const VersionDifference& since(const std::shared_ptr<const SceneVersion>& version);
   std::shared_ptr<const FormFactorColumn> present_column(std::uint32_t patch, ChangeWork& work);
   void set_materials(const Scene& scene, std::uint32_t object);
@@ -167,21 +180,19 @@ class DynamicRadiosity {
   void receive(std::uint32_t element, double F, const double* amount);
   void refresh_patches_of(const std::vector<std::uint32_t>& elements);
   void drop_empty_layers();
+  void take_from_gathered(const Layer& layer, std::uint32_t patch, std::vector<std::uint32_t>& touched);
   std::vector<double> importance_of(const Layer& layer, const VersionDifference& difference) const;
   void rank(Layer& layer);
   double luminance_of(const double* values) const;
   bool is_zero(const Layer& layer, std::uint32_t patch) const;
 
   std::uint32_t bands_;
-  std::vector<double> weights_;                // of bands
-  std::vector<Layer> layers_;                  // the present one last
-  std::vector<CompensatedSum> H_;              // by element and band
-  std::optional<std::uint32_t> changed_last_;  // the object that gathers, if it is there
-  std::uint32_t gathered_patches_ = 0;         // the first of its
-  ObjectRows gathered_rows_;                   // of their elements
-  std::vector<CompensatedSum> G_;              // by element of the object and band; empty: 0
-  std::vector<double> rho_, E_;                // by patch and band
-  std::vector<double> B_, unshot_;             // by patch and band
+  std::vector<double> weights_;        // of bands
+  std::vector<Layer> layers_;          // the present one last
+  std::vector<CompensatedSum> H_;      // by element and band
+  std::vector<Gathering> gatherings_;  // that of the object that was changed last at the end
+  std::vector<double> rho_, E_;        // by patch and band
+  std::vector<double> B_, unshot_;     // by patch and band
   bool has_forgotten_ = false;
   ImportanceOptions importance_;
   ColumnStore columns_;

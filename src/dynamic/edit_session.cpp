@@ -105,8 +105,12 @@ bool EditSession::propagates(const DynamicRadiosity& of, double strongest) const
 
 /// One shot, the one that comes next; false when nothing is left to do.
 bool EditSession::step(DynamicRadiosity& of, SessionWork& work) {
-  const bool gathers = options_.object_terms == ObjectTerms::gathered && options_.method == UpdateMethod::redistribute;
   const auto propagate = [&](std::uint32_t patch) { count(of.propagate(patch), work); };
+  const auto redistribute = [&](const DynamicRadiosity::StrongestChange& change) {
+    const auto search = options_.method == UpdateMethod::restart ? VersionDifference::Search::everywhere
+                                                                 : VersionDifference::Search::shadow_volumes;
+    count(of.redistribute(change.change, change.patch, search), work);
+  };
   if (edited_) {
     const auto emitter = of.strongest_of(*edited_);
     if (emitter.energy > 0 && of.pending_changes() > 0 && !of.has_shot(emitter.patch)) {
@@ -114,20 +118,29 @@ bool EditSession::step(DynamicRadiosity& of, SessionWork& work) {
       return true;
     }
   }
-  if (gathers && of.can_gather()) {
+  const bool gathers = options_.object_terms == ObjectTerms::gathered && options_.method == UpdateMethod::redistribute;
+  const std::uint32_t to_gather = gathers ? of.patches_to_gather() : 0;
+  // Exact importance needs what is gathered: it is not asked for before.
+  if (to_gather > 0 && options_.importance.kind == ImportanceOptions::Kind::exact) {
     count(of.gather(), work);
+    return true;
+  }
+  const auto change = of.strongest_change();
+  if (to_gather > 0) {
+    if (change.energy * to_gather > change.of_all) {
+      redistribute(change);
+    } else {
+      count(of.gather(), work);
+    }
     return true;
   }
   const auto unshot = of.strongest();
   const bool can_propagate = propagates(of, unshot.energy);
-  const auto change = of.strongest_change();
   if (change.energy < 0 && !can_propagate) return false;
   const bool first = options_.strategy == Strategy::redistribute_first && change.energy >= 0 &&
                      change.energy >= options_.threshold * of.power_of_sources();
   if (first || !can_propagate || change.energy >= unshot.energy) {
-    const auto search = options_.method == UpdateMethod::restart ? VersionDifference::Search::everywhere
-                                                                 : VersionDifference::Search::shadow_volumes;
-    count(of.redistribute(change.change, change.patch, search), work);
+    redistribute(change);
   } else {
     propagate(unshot.patch);
   }

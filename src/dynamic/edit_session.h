@@ -27,8 +27,11 @@ enum class Strategy : std::uint8_t {
 
 /// How the patches of the object that was edited get their redistribution terms, by UpdateMethod::redistribute.
 enum class ObjectTerms : std::uint8_t {
-  shot,     ///< by the redistribution shots of others (Figure 2)
-  gathered  ///< each by itself and before all redistribution shots, which then go to the shadows only
+  shot,  ///< by the redistribution shots of others (Figure 2)
+  /// Each by itself, and shots then go to the shadows only: next is always the strongest redistribution shot or, where
+  /// one of them gets more on the average, the next of them (of exact importance always: it needs the same form
+  /// factors). Nothing else is propagated before all have.
+  gathered
 };
 
 struct SessionOptions {
@@ -39,7 +42,7 @@ struct SessionOptions {
   /// power, as it is ranked. 0: until nothing is left to redistribute.
   double threshold = 1e-4;
   ImportanceOptions importance;
-  ObjectTerms object_terms = ObjectTerms::shot;
+  ObjectTerms object_terms = ObjectTerms::gathered;
   /// Without it what is interrupted by an edit is never redistributed, and B stays wrong by that, however long the
   /// session works (DynamicRadiosity::has_forgotten).
   bool log = true;

@@ -61,7 +61,7 @@ class PatchShade {
   std::vector<std::unique_ptr<ShadowVolume>> volumes_;  ///< [piece][caster]
 };
 
-/// Whether something that stays as it is hides all of a patch from a sample point by itself.
+/// Whether something hides all of a patch from a sample point by itself, in the later version.
 class Screens {
  public:
   explicit Screens(const SceneVersion& version) : version_(version), shaft_(version.soup()) {}
@@ -199,6 +199,8 @@ void VersionDifference::compare(std::uint32_t receiver, std::uint32_t patch, Sea
     sight.set(receiver, patch);
     if (!sight.sees()) return;
     for (FormFactorChange& c : changes) {
+      // Much of a changed object lies behind another part of it: that is told sooner than what is left of the patch.
+      if (!stays && scratch.screens.hide(patch, c.element, sight.between())) continue;
       const PointFormFactor f = sight.form_factor(c.element);
       c.*F = f.F;
       c.error += f.error;

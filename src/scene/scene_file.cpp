@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -177,6 +178,7 @@ class SceneFile {
         break;
       case Operation::change:
         event.edit.materials = read_changes(table);
+        follow_changes(event.edit);
         break;
       default:
         break;
@@ -210,15 +212,59 @@ class SceneFile {
     return table.has("scale") || table.has("rotate") || table.has("translate");
   }
 
+  /// A new shape is of what the object was made of, where the event does not say.
   void read_new_shape(TomlTable& table, Edit& edit, const std::string& name) {
     Scene part = read_part(table, name);
-    const std::vector<std::uint32_t> numbers = take_materials(part, read_overrides(table, part));
+    std::vector<std::uint32_t> overrides = read_overrides(table, part);
+    const ObjectMaterials& kept = materials_of_[edit.object];
+    for (std::uint32_t i = 0; i < overrides.size(); ++i) {
+      const Material& own = part.materials[i];
+      const bool is_used = std::ranges::any_of(part.surfaces, [&](const Surface& s) { return s.material == i; });
+      if (overrides[i] != kOwn || !is_used) continue;
+      if (const auto named = kept.by_name.find(own.name); named != kept.by_name.end()) {
+        overrides[i] = named->second;
+      } else if (kept.every) {
+        overrides[i] = *kept.every;
+      } else if (own.rho.empty() && own.E.empty()) {
+        if (kept.used.size() != 1)
+          table.fail(table.line(), fmt::format("object '{}' is of {} materials and its new shape names none; say which "
+                                               "with \"material\" or \"materials\"",
+                                               name, kept.used.size()));
+        overrides[i] = *kept.used.begin();
+      }
+    }
+    const auto every = table.string("material");
+    ObjectMaterials now{
+        every ? find_material(table, table.line_of("material"), *every) : kept.every, renamed(part, overrides), {}};
+    const std::vector<std::uint32_t> numbers = take_materials(part, overrides);
     for (Surface& surface : part.surfaces) {
       surface.material = numbers[surface.material];
       surface.object = edit.object;
+      now.used.insert(surface.material);
       edit.shape.push_back(std::move(surface));
     }
+    materials_of_[edit.object] = std::move(now);
     std::ranges::move(part.warnings, std::back_inserter(scene_.warnings));
+  }
+
+  /// What an object is made of changes, and with it what a later shape is.
+  void follow_changes(const Edit& edit) {
+    ObjectMaterials& of = materials_of_[edit.object];
+    for (const MaterialChange& c : edit.materials) {
+      if (c.from == MaterialChange::kEvery) {
+        of = {c.to, {}, {c.to}};
+        continue;
+      }
+      if (of.used.erase(c.from) > 0) of.used.insert(c.to);
+      if (of.every == c.from) of.every = c.to;
+      for (auto& [name, number] : of.by_name) {
+        if (number == c.from) number = c.to;
+      }
+      const std::string& name = scene_.materials[c.from].name;
+      const auto of_file = material_numbers_.find(name);
+      const bool is_of_mesh = of_file == material_numbers_.end() || of_file->second != c.from;
+      if (is_of_mesh) of.by_name.insert_or_assign(name, c.to);
+    }
   }
 
   std::vector<MaterialChange> read_changes(TomlTable& table) const {
@@ -297,6 +343,12 @@ class SceneFile {
     const std::string name = table.string("name").value_or("");
     Scene part = read_part(table, name);
     const std::vector<std::uint32_t> overrides = read_overrides(table, part);
+    const auto every = table.string("material");
+    const ObjectMaterials given{
+        every ? std::optional(find_material(table, table.line_of("material"), *every)) : std::nullopt,
+        renamed(part, overrides),
+        {}};
+    materials_of_.resize(scene_.objects.size() + part.objects.size(), given);
     append(std::move(part), overrides, table.flag("absent"));
     table.refuse_unknown_keys();
   }
@@ -505,6 +557,16 @@ class SceneFile {
     return overrides;
   }
 
+  /// By the names of a part's own materials: those of the scene that replace them.
+  std::map<std::string, std::uint32_t> renamed(const Scene& part, const std::vector<std::uint32_t>& overrides) const {
+    std::map<std::string, std::uint32_t> numbers;
+    for (std::uint32_t i = 0; i < overrides.size(); ++i) {
+      if (overrides[i] != kOwn && !named_.contains(i) && !part.materials[i].name.empty())
+        numbers.emplace(part.materials[i].name, overrides[i]);
+    }
+    return numbers;
+  }
+
   /// Numbers in the scene of a part's materials.
   std::vector<std::uint32_t> take_materials(Scene& part, std::vector<std::uint32_t> numbers) {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -522,6 +584,7 @@ class SceneFile {
     for (Surface& surface : part.surfaces) {
       surface.material = numbers[surface.material];
       surface.object += first_object;
+      materials_of_[surface.object].used.insert(surface.material);
       (absent ? scene_.absent : scene_.surfaces).push_back(std::move(surface));
     }
     std::ranges::move(part.warnings, std::back_inserter(scene_.warnings));
@@ -536,7 +599,15 @@ class SceneFile {
   LinkDefaults links_;
   std::vector<Event> events_;
   std::vector<CameraAt> camera_path_;
+  /// What an object is made of, for new shapes that do not say.
+  struct ObjectMaterials {
+    std::optional<std::uint32_t> every;            ///< what all is made of that is not named
+    std::map<std::string, std::uint32_t> by_name;  ///< of its mesh's materials, those that became others
+    std::set<std::uint32_t> used;                  ///< by its surfaces
+  };
+
   std::map<std::string, std::uint32_t> material_numbers_;
+  std::vector<ObjectMaterials> materials_of_;     // by object
   std::map<std::uint32_t, std::uint32_t> named_;  // of the object being read: its material → the file's
 };
 

@@ -77,6 +77,37 @@ TEST(Dynamic, BudgetsStopReplaysRepeatAndTheLogIsWorkedOff) {
   EXPECT_TRUE(again.back()["finished"]);
 }
 
+TEST(Dynamic, OptionsThatAMethodDoesNotUseAreRefused) {
+  const ScratchFolder scratch;
+  const auto refused = [&](const std::string& method, const std::string& option) {
+    const Outcome outcome =
+        run("dynamic " + data("cube.toml") + " --method " + method + " " + option + " -o " + (scratch / "o").string());
+    EXPECT_EQ(outcome.code, 2) << method << " " << option;
+    EXPECT_THAT(outcome.err, HasSubstr(option.substr(0, option.find(' ')) + ": needs --")) << method;
+    EXPECT_FALSE(std::filesystem::exists(scratch / "o"));
+  };
+  for (const char* option : {"--strategy 1", "--threshold 0.1", "--importance exact", "--importance-points 2",
+                             "--object-terms shot", "--no-log", "--eps 0.1", "--b-eps 0.1"})
+    refused("scratch", option);
+  for (const char* option : {"--importance exact", "--object-terms gathered", "--link-points 2"})
+    refused("restart", option);
+  for (const char* option : {"--strategy 2", "--object-terms gathered", "--no-log", "--budget-shots 1", "--elements 2",
+                             "--references kept.h5", "--replay frames.json", "--b-eps 0.1"}) {
+    for (const char* method : {"rebuild", "direct", "hvt"}) refused(method, option);
+  }
+  refused("rebuild", "--budget-ms 1");
+  refused("redistribute", "--min-area 1");
+  refused("redistribute --importance exact", "--importance-points 2");
+  const std::string out = " -o " + (scratch / "o").string();
+  EXPECT_EQ(run("dynamic " + data("cube.toml") + " --no-reference --references kept.h5" + out).code, 2);
+  for (const char* method : {"rebuild", "direct"}) {
+    const Outcome nothing_left = run("dynamic " + data("cube.toml") + " --patch-size 2 --eps 0.5 --min-area 9 " +
+                                     "--no-images --work-off --method " + method + out);
+    EXPECT_EQ(nothing_left.code, 0) << nothing_left.err;
+    EXPECT_EQ(json_in(scratch / "o" / "frames.json").size(), 4u) << "no frame more";
+  }
+}
+
 TEST(Dynamic, BadInputAndLimits) {
   const ScratchFolder scratch;
   const std::string out = " -o " + (scratch / "o").string();

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "src/dynamic/converged_reference.h"
 #include "src/scene/trespass.h"
@@ -35,6 +36,12 @@ SessionOptions plain() {
   return options_with(UpdateMethod::redistribute, Strategy::redistribute_first, ImportanceOptions::Kind::estimated);
 }
 
+SessionOptions shooting() {
+  SessionOptions options = plain();
+  options.object_terms = ObjectTerms::shot;
+  return options;
+}
+
 double distance(const DynamicRadiosity& state) {
   const std::vector<double> reference = converged_reference(state), B = state.element_B();
   double largest = 0;
@@ -54,7 +61,7 @@ TEST(EditSession, EveryMethodStrategyAndImportanceConvergesToTheSame) {
         options_with(UpdateMethod::redistribute, Strategy::redistribute_first, Kind::estimated),
         options_with(UpdateMethod::redistribute, Strategy::redistribute_first, Kind::exact),
         options_with(UpdateMethod::redistribute, Strategy::interleave, Kind::estimated),
-        options_with(UpdateMethod::redistribute, Strategy::interleave, Kind::exact), gathering()}) {
+        options_with(UpdateMethod::redistribute, Strategy::interleave, Kind::exact), gathering(), shooting()}) {
     EditSession session(test_room(), options);
     EXPECT_TRUE(session.work({}).finished);
     session.apply(moved(1, {0.25, 0.5, 0}));
@@ -143,7 +150,7 @@ TEST(EditSession, TheLogIsRankedWhereEmittersCameFirstOrAnObjectIsHeld) {
 }
 
 TEST(EditSession, AskingForTheLogChangesNoShot) {
-  for (const SessionOptions& options : {plain(), gathering()}) {
+  for (const SessionOptions& options : {plain(), gathering(), shooting()}) {
     EditSession asked(test_room(), options);
     asked.work({});
     asked.apply(moved(1, {0.5, 0, 0}));
@@ -209,7 +216,7 @@ TEST(EditSession, ShotsThatWereCountedReplayBitForBit) {
       const SessionWork work = session.work(budget);
       if (counted != nullptr) {
         EXPECT_TRUE(work.interrupted);
-        counted->push_back(work.propagations + work.redistributions);
+        counted->push_back(work.shots());
       }
       B = session.solution().element_B();
     }
@@ -244,6 +251,28 @@ TEST(EditSession, AnEditedObjectGathersFirstAndEachPatchIsAShot) {
   work = session.work({});
   EXPECT_EQ(work.gatherings, patches - 4);
   EXPECT_GT(work.redistributions, 10u);
+  EXPECT_LT(distance(session.solution()), 1e-10);
+}
+
+// Whichever brings more: a shot of one of the four patches of light, or what all others bring to a patch of the box.
+TEST(EditSession, TheStrongestShotsComeBeforeWhatIsGathered) {
+  Scene dim = test_room();
+  dim.materials[0].rho = {0.05, 0.05, 0.05};
+  EditSession session(dim, plain());
+  session.work({});
+  session.apply(moved(1, {0.5, 0, 0}));
+  ASSERT_EQ(session.solution().version().slot(1).patch_count, 6u);
+  Budget one;
+  one.shots = 1;
+  std::string kinds;
+  while (kinds.empty() || kinds.back() != 'p') {
+    const SessionWork work = session.work(one);
+    kinds += work.redistributions > 0 ? 'r' : work.gatherings > 0 ? 'g' : 'p';
+  }
+  EXPECT_THAT(kinds, testing::StartsWith("rrrr"));
+  EXPECT_THAT(kinds, HasSubstr("rggggggr")) << "the others then go to the shadows";
+  EXPECT_THAT(kinds, testing::EndsWith("rp"));
+  session.work({});
   EXPECT_LT(distance(session.solution()), 1e-10);
 }
 
@@ -334,6 +363,62 @@ TEST(EditSession, WithoutTheLogWhatWasInterruptedStaysWrong) {
   }
   EXPECT_TRUE(session.work({}).finished);
   EXPECT_GT(distance(session.solution()), 1e-4);
+}
+
+/// Random edits, some of an object that is selected, with few shots after each.
+class RandomSession {
+ public:
+  RandomSession(std::uint64_t seed, const SessionOptions& options) : session(test_room(), options), random_(seed) {}
+
+  void edit() {
+    const EditedScene& scene = session.scene();
+    const auto selected = scene.selected();
+    const std::uint32_t object = 1 + random_.pick(4);
+    if (selected && random_.pick(4) == 0) {
+      session.apply({Operation::deselect, *selected, {}, {}, {}});
+    } else if (random_.pick(6) == 0 && scene.is_present(object)) {
+      session.apply({Operation::select, object, {}, {}, {}});
+    } else {
+      Edit edit = random_.next(scene);
+      while (selected && edit.object != *selected) edit = random_.next(scene);
+      session.apply(edit);
+    }
+    Budget budget;
+    budget.shots = random_.pick(12) * random_.pick(3);
+    session.work(budget);
+  }
+
+  EditSession session;
+
+ private:
+  RandomEdits random_;
+};
+
+TEST(EditSession, AHundredRandomEditsOfAnySessionEqualSolvingFromScratch) {
+  for (const SessionOptions& options : {plain(), shooting()}) {
+    RandomSession random(17, options);
+    std::size_t most_pending = 0;
+    for (int k = 0; k < 100; ++k) {
+      random.edit();
+      most_pending = std::max(most_pending, random.session.log().size());
+      if (k % 25 != 24) continue;
+      EXPECT_TRUE(random.session.work({}).finished);
+      EXPECT_LT(distance(random.session.solution()), 1e-10) << "edit " << k;
+    }
+    EXPECT_GT(most_pending, 5u) << "several changes were open at a time";
+  }
+}
+
+TEST(EditSession, AnyNumberOfThreadsGivesTheSameBits) {
+  const auto run = [](std::size_t threads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    RandomSession random(23, plain());
+    for (int k = 0; k < 20; ++k) random.edit();
+    return random.session.solution().element_B();
+  };
+  const auto one = run(1);
+  EXPECT_EQ(one, run(2));
+  EXPECT_EQ(one, run(5));
 }
 
 TEST(FrameReferences, ByShotsAreThoseByGathering) {

@@ -128,12 +128,13 @@ absent = true
 };
 
 TEST_F(EventFile, EverythingAtOnce) {
-  const DynamicScene scene = read(event(1, "cube", "add", "translate = [0.5, 0, 0]") +
-                                  event(2, "cube", "move", "rotate = {axis = [0,0,1], degrees = 90}\npivot = [1.5,1.5,0]") +
-                                  event(3, "cube", "change", "material = \"only in events\"") +
-                                  event(4, "cube", "reshape", "box = {min = [0.5,0.5,0], max = [1,1,2]}\nmaterial = \"white\"") +
-                                  event(5, "cube", "select") + event(6, "cube", "deselect") + event(7, "cube", "remove") +
-                                  "[[camera_path]]\ntime = 0\neye = [1,1,1]\ntarget = [2,2,2]\n");
+  const DynamicScene scene =
+      read(event(1, "cube", "add", "translate = [0.5, 0, 0]") +
+           event(2, "cube", "move", "rotate = {axis = [0,0,1], degrees = 90}\npivot = [1.5,1.5,0]") +
+           event(3, "cube", "change", "material = \"only in events\"") +
+           event(4, "cube", "reshape", "box = {min = [0.5,0.5,0], max = [1,1,2]}\nmaterial = \"white\"") +
+           event(5, "cube", "select") + event(6, "cube", "deselect") + event(7, "cube", "remove") +
+           "[[camera_path]]\ntime = 0\neye = [1,1,1]\ntarget = [2,2,2]\n");
   EXPECT_EQ(scene.scene.surfaces.size(), 6u);
   EXPECT_EQ(scene.scene.absent.size(), 6u);
   EXPECT_EQ(scene.scene.bands, 3u) << "a material that only an event names counts";
@@ -150,6 +151,53 @@ TEST_F(EventFile, EverythingAtOnce) {
   EXPECT_EQ(edited.scene().surfaces[6].polygon.outer[0], (Vec3{0.5, 0.5, 0}));
   EXPECT_EQ(scene.camera_path.size(), 1u);
   EXPECT_EQ(scene.scene.mesh.elements_per_edge, 2u);
+}
+
+TEST_F(EventFile, ANewShapeIsOfWhatTheObjectWasMadeOf) {
+  const std::string box = "box = {min = [0.5,0.5,0], max = [1,1,2]}\n", own = "material = \"only in events\"\n";
+  const auto material_after = [&](const std::string& events) {
+    const DynamicScene scene = read(event(1, "cube", "add") + events);
+    EditedScene edited(scene.scene);
+    for (const Event& e : scene.events) edited.apply(e.edit);
+    return edited.scene().materials[edited.scene().surfaces.back().material].name;
+  };
+  EXPECT_EQ(material_after(event(2, "cube", "reshape", box)), "white");
+  EXPECT_EQ(material_after(event(2, "cube", "reshape", box + own)), "only in events");
+  const std::string changed = event(2, "cube", "change", own);
+  EXPECT_EQ(material_after(changed + event(3, "cube", "reshape", box)), "only in events");
+  EXPECT_EQ(material_after(changed + event(3, "cube", "reshape", box + "material = \"white\"\n")), "white");
+  EXPECT_EQ(material_after(event(2, "cube", "reshape", box + own) + event(3, "cube", "reshape", box)),
+            "only in events");
+  EXPECT_EQ(material_after(event(2, "cube", "change", "materials = {white = \"nowhere\"}") +
+                           event(3, "cube", "reshape", box)),
+            "nowhere");
+}
+
+TEST_F(EventFile, ANewMeshIsOfWhatItsMaterialsWereReplacedBy) {
+  write("tin.mtl", "newmtl tin\nKd 0.3 0.3 0.3\n");
+  for (const char* name : {"one.obj", "two.obj"})
+    write(name, "mtllib tin.mtl\nv 0 0 1\nv 1 0 1\nv 0 1 1\nusemtl tin\nf 1 2 3\n");
+  write("bare.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
+  const auto material_after = [&](const std::string& given, const std::string& mesh, const std::string& events = "") {
+    const DynamicScene scene =
+        read("[[object]]\nname = \"flag\"\nmesh = \"one.obj\"\n" + given + event(1, "cube", "add") + events +
+             event(9, "flag", "reshape", "mesh = \"" + mesh + "\""));
+    EditedScene edited(scene.scene);
+    for (const Event& e : scene.events) edited.apply(e.edit);
+    const Material& material = edited.scene().materials[edited.scene().surfaces.back().material];
+    return material.name + (material.rho[0] == 0.3 ? " 0.3" : "");
+  };
+  EXPECT_EQ(material_after("", "two.obj"), "tin 0.3") << "its own";
+  EXPECT_EQ(material_after("", "bare.obj"), "tin 0.3") << "it has none: what the object was of";
+  EXPECT_EQ(material_after("material = \"white\"\n", "two.obj"), "white");
+  EXPECT_EQ(material_after("materials = {tin = \"white\"}\n", "two.obj"), "white");
+  EXPECT_EQ(material_after("", "two.obj", event(2, "flag", "change", "materials = {tin = \"nowhere\"}")), "nowhere");
+  const std::string two =
+      "[[object]]\nname = \"screen\"\npolygons = [{polygon = [[0,0,2],[1,0,2],[0,1,2]], material = "
+      "\"white\"}, {polygon = [[0,0,2.5],[1,0,2.5],[0,1,2.5]], material = \"nowhere\"}]\n";
+  EXPECT_THAT(error_of(two + event(1, "screen", "reshape", "mesh = \"bare.obj\"")),
+              HasSubstr("'screen' is of 2 materials and its new shape names none"));
+  EXPECT_EQ(error_of(two + event(1, "screen", "reshape", "mesh = \"bare.obj\"\nmaterial = \"white\"")), "");
 }
 
 TEST_F(EventFile, SmallPatchesAreOneElement) {
@@ -177,7 +225,8 @@ TEST_F(EventFile, BadEventsNameTheirLineAndWhatIsWrong) {
   EXPECT_THAT(error_of(added + event(2, "cube", "deselect")), HasSubstr("'cube' is not selected"));
   EXPECT_THAT(error_of(added + event(2, "cube", "select") + event(3, "room", "remove")),
               HasSubstr("'cube' is selected; deselect it before"));
-  EXPECT_EQ(error_of(added + event(2, "cube", "select") + event(3, "room", "select") + event(4, "room", "deselect")), "");
+  EXPECT_EQ(error_of(added + event(2, "cube", "select") + event(3, "room", "select") + event(4, "room", "deselect")),
+            "");
   EXPECT_THAT(error_of(event(1, "cube", "add") + event(2, "cube", "add")), HasSubstr("there already"));
   EXPECT_THAT(error_of(event(1, "cube", "add") + event(2, "cube", "change")), HasSubstr("needs \"material\""));
   EXPECT_THAT(error_of(event(1, "cube", "add") + event(2, "cube", "change", "material = \"blue\"")),
@@ -187,9 +236,10 @@ TEST_F(EventFile, BadEventsNameTheirLineAndWhatIsWrong) {
   EXPECT_THAT(error_of(event(1, "cube", "add", "speed = 3")), HasSubstr("\"speed\" is not known"));
   EXPECT_THAT(error_of("[[event]]\nobject = \"cube\"\noperation = \"add\"\n"), HasSubstr("\"time\" is missing"));
   EXPECT_THAT(error_of("[[event]]\ntime = nan\nobject = \"cube\"\noperation = \"add\"\n"), HasSubstr("finite"));
-  EXPECT_THAT(error_of("[[camera_path]]\ntime = 1\neye=[0,0,0]\ntarget=[1,1,1]\n[[camera_path]]\ntime = 1\neye=[0,0,0]\n"
-                       "target=[1,1,1]\n"),
-              HasSubstr("must ascend"));
+  EXPECT_THAT(
+      error_of("[[camera_path]]\ntime = 1\neye=[0,0,0]\ntarget=[1,1,1]\n[[camera_path]]\ntime = 1\neye=[0,0,0]\n"
+               "target=[1,1,1]\n"),
+      HasSubstr("must ascend"));
 }
 
 }  // namespace
