@@ -150,8 +150,7 @@ class Frames {
     for (const std::uint32_t n : elements) {
       const std::uint32_t root = links_.tree().node(n).root;
       const auto E = links_.radiosity().E().subspan(std::size_t{root} * bands, bands);
-      const auto of_node = links_.radiosity().B().subspan(std::size_t{n} * bands, bands);
-      B.insert(B.end(), of_node.begin(), of_node.end());
+      for (std::uint32_t b = 0; b < bands; ++b) B.push_back(links_.radiosity().whole_B(n, b));
       emits.push_back(std::ranges::any_of(E, [](double value) { return value > 0; }));
     }
     write_frame(folder_, given_, {result_.frames.size(), time, faces, bands, B}, [&](const Camera& camera) {

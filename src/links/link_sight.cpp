@@ -214,7 +214,7 @@ double LinkSight::visible_form_factor(std::uint32_t receiver, std::uint32_t sour
   const Lap lap(work_.seconds_visibility);
   const Node& node = tree_.node(receiver);
   const Vec3 normal = obstacles_.soup().facets()[node.facet].plane.normal;
-  node_points(node, per_edge_, points_);
+  tree_.open_points(receiver, per_edge_, points_);
   work_.visibility_tests += points_.size();
   double sum = 0;
   for (const NodePoint& p : points_) {

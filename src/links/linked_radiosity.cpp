@@ -75,7 +75,9 @@ LinkedRadiosity::LinkedRadiosity(Scene scene, const LinkOptions& options)
       tree_(scene_, obstacles_->soup(), {options_.mesh, options_.smallest_area}),
       radiosity_(tree_, scene_),
       links_(tree_.roots().size()),
-      brightest_(largest_emission(scene_.scene())) {}
+      brightest_(largest_emission(scene_.scene())) {
+  tree_.cover(obstacles_->soup(), obstacles_->contacts());
+}
 
 LinkTask LinkedRadiosity::task(LinkScope scope) const {
   LinkTask task;
@@ -372,6 +374,8 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
       tree_.change_geometry(scene_, obstacles_->soup(), obstacles_->polygons(), object);
       radiosity_.change_geometry(scene_, object);
     }
+    tree_.cover(obstacles_->soup(), obstacles_->contacts());
+    radiosity_.change_covering();
   }
   for (std::uint32_t object = 0; object < objects; ++object) {
     if (relit[object] != 0) radiosity_.change_materials(scene_, object);
@@ -455,7 +459,7 @@ std::vector<std::uint32_t> LinkedRadiosity::elements() const {
 ConvergenceError link_error(const PatchTree& tree, std::span<const std::uint32_t> elements, std::uint32_t bands,
                             std::span<const double> reference, std::span<const double> was,
                             std::span<const double> current) {
-  const auto area = [&](std::uint32_t n) { return tree.node(n).area; };
+  const auto area = [&](std::uint32_t n) { return tree.node(n).open_area; };
   return convergence_error(elements, area, bands, reference, was, current);
 }
 

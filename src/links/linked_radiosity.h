@@ -150,7 +150,7 @@ class LinkedRadiosity {
   std::optional<Pending> pending_;
 };
 
-/// Equation 7 over elements(). By node and band: the reference, what it was before and what it is.
+/// Equation 7 over what is open of elements(). By node and band: the reference, what it was before and what it is.
 ConvergenceError link_error(const PatchTree& tree, std::span<const std::uint32_t> elements, std::uint32_t bands,
                             std::span<const double> reference, std::span<const double> was,
                             std::span<const double> current);

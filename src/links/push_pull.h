@@ -30,7 +30,8 @@ struct LinkExchange {
 };
 
 /// B [W/m²] of every node and band at [node * bands + band]; of a leaf E + ρ H with H the sum of what its own links and
-/// those of the nodes above it bring; of others the mean of the leaves, weighted by area. 0 where nothing is there.
+/// those of the nodes above it bring, E where all of it is covered; of others the mean of the leaves, weighted by their
+/// open areas: links bring what is seen, which is never what is covered. 0 where nothing is there.
 class NodeRadiosity {
  public:
   /// The tree must live as long.
@@ -38,6 +39,8 @@ class NodeRadiosity {
 
   std::uint32_t bands() const { return bands_; }
   std::span<const double> B() const { return B_; }
+  /// Mean over all of a node, where what is covered has its E.
+  double whole_B(std::uint32_t node, std::uint32_t band) const;
   /// By node.
   std::span<const double> luminance() const { return Y_; }
   /// By root and band.
@@ -51,6 +54,9 @@ class NodeRadiosity {
   /// its B until it is cleared, so that it can be told what its links brought.
   void change_geometry(const EditedScene& scene, std::uint32_t object);
   void clear_what_is_gone();
+  /// After the edits: what covers nodes is now what the tree says. B follows with H as it is, and what that changes, of
+  /// means, too, remains to be shot.
+  void change_covering();
   /// Reflectances and emissions of an object are now those of the scene. B becomes E' + ρ' H with H as it is; what that
   /// changes remains to be shot.
   void change_materials(const EditedScene& scene, std::uint32_t object);
@@ -75,7 +81,12 @@ class NodeRadiosity {
   void fit_arrays();
   void set_materials(const EditedScene& scene, std::uint32_t object);
   void start(std::uint32_t root);
+  double B_of_leaf(std::uint32_t node, std::uint32_t band) const;
+  void renew(std::uint32_t root);
   void pull(std::uint32_t root, std::vector<double>& values, std::size_t bands);
+  void pull_changes(std::uint32_t root);
+  template <class Changed>
+  void pull(std::uint32_t root, std::vector<double>& values, std::size_t bands, const Changed& changed);
   void find_luminance(std::uint32_t root);
 
   const PatchTree* tree_;
@@ -87,6 +98,7 @@ class NodeRadiosity {
   std::vector<double> w_, next_w_;                  ///< by node, of the error bound
   std::vector<double> received_, unshot_;           ///< by node and band
   std::vector<std::uint8_t> has_received_, there_;  ///< by root
+  std::vector<std::uint8_t> weighs_anew_;           ///< by root: its means have changed by themselves; not yet shot
 };
 
 /// By node: Σ F over its links, those of the nodes above it and those of clusters.
