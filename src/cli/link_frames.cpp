@@ -72,6 +72,7 @@ class Frames {
     by_budget = by_budget && options_.budget;
     if (!by_budget) how.order = LinkOrder::any;
     const auto start = std::chrono::steady_clock::now();
+    how.abandon = options_.abandon;
     how.stop = [this, start, by_budget] {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
       return (by_budget && spent.count() >= *options_.budget) || (options_.stop && options_.stop());
@@ -90,7 +91,7 @@ class Frames {
     const std::span<const double> B = links_.radiosity().B();
     std::optional<ConvergenceError> error;
     if (options_.references) {
-      const std::vector<double> reference = links_.converged();
+      const std::vector<double> reference = links_.converged(options_.abandon);
       error = link_error(links_.tree(), elements, links_.radiosity().bands(), reference, reference_before_, B);
       reference_before_ = reference;
     }
@@ -176,7 +177,11 @@ std::optional<LinkMethod> link_method_named(const std::string& name) {
 }
 
 LinksEnd follow_links(const DynamicScene& given, const LinkFrameOptions& options, const std::filesystem::path& folder) {
-  return Frames(given, options, folder).follow();
+  try {
+    return Frames(given, options, folder).follow();
+  } catch (const Abandoned&) {
+    return LinksEnd::unfinished;
+  }
 }
 
 }  // namespace exitance

@@ -113,7 +113,7 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
   const std::vector<std::uint32_t> elements = links.elements();
   s.patches.B.resize(s.mesh.patches.size() * bands);
   s.patches.H.resize(s.patches.B.size());
-  std::vector<double> patch_row_sum(s.mesh.patches.size());
+  std::vector<double> patch_row_sum(s.mesh.patches.size()), patch_open(s.mesh.patches.size());
   const std::vector<double> row_sum = row_sums(links.links(), links.cluster_links(), links.tree());
   // A leaf below an element receives what the element does, as far as it is open.
   for (std::size_t e = 0; e < elements.size(); ++e) {
@@ -130,6 +130,11 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
     }
     s.element_row_sum.push_back(open * row_sum[leaf]);
     patch_row_sum[p] += share * s.element_row_sum.back();
+    patch_open[p] += share * open;
+  }
+  // What leaves a patch leaves its open part.
+  for (std::size_t p = 0; p < patch_open.size(); ++p) {
+    if (patch_open[p] > 0) patch_row_sum[p] /= patch_open[p];
   }
   s.patches.iterations = result.update.exchange.iterations;
   s.patches.residual = result.update.exchange.residual;

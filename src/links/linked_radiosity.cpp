@@ -101,22 +101,27 @@ std::uint64_t LinkedRadiosity::bytes_left() const {
   return options_.mesh.memory_limit - std::min(options_.mesh.memory_limit, taken);
 }
 
-void LinkedRadiosity::gather(LinkUpdate& update) {
+void LinkedRadiosity::gather(LinkUpdate& update, const Abandon& abandon) {
   RunClock watch;
-  update.exchange = radiosity_.gather(links_, clusters_, options_.tolerance);
+  update.exchange = radiosity_.gather(links_, clusters_, options_.tolerance, abandon);
   update.seconds_exchange += watch.lap();
 }
 
 /// Only what differs from before.
-void LinkedRadiosity::shoot(LinkUpdate& update) {
+void LinkedRadiosity::shoot(LinkUpdate& update, const Abandon& abandon) {
   RunClock watch;
-  const std::uint64_t rounds = radiosity_.shoot(links_, options_.tolerance);
+  const std::uint64_t rounds = radiosity_.shoot(links_, options_.tolerance, abandon);
   update.exchange.iterations += rounds;
   update.exchange.converged = rounds < kMostExchanges;
   update.seconds_exchange += watch.lap();
 }
 
 LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
+  return build(LinkInterruption{stop, LinkOrder::any, {}});
+}
+
+LinkUpdate LinkedRadiosity::build(const LinkInterruption& interruption) {
+  const std::function<bool()>& stop = interruption.stop;
   RunClock whole;
   LinkUpdate update;
   links_ = LinkIndex(tree_.roots().size());
@@ -138,6 +143,7 @@ LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
     }
     LinkTask refinement = task(LinkScope::refinement);
     refinement.stop = ends;
+    refinement.abandon = interruption.abandon;
     if (options_.clusters) {
       refinement.new_pairs = &of_clusters.pairs;
       refinement.most_links -=
@@ -153,10 +159,10 @@ LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
       break;
     }
     ++update.rounds;
-    radiosity_.gather(links_, clusters_, kWhileBuilding);
+    radiosity_.gather(links_, clusters_, kWhileBuilding, interruption.abandon);
     update.seconds_exchange += watch.lap();
   }
-  gather(update);
+  gather(update, interruption.abandon);
   judge_all();
   update.seconds = whole.seconds();
   update.cpu_seconds = whole.cpu_seconds();
@@ -264,9 +270,9 @@ void LinkedRadiosity::follow(Pending pending, const LinkInterruption& interrupti
     pending.stage = Stage::new_light;
   update.seconds_links += watch.lap();
   if (shoots) {
-    shoot(update);
+    shoot(update, interruption.abandon);
   } else {
-    gather(update);
+    gather(update, interruption.abandon);
   }
   bool done = pending.stage == Stage::new_light;
   // What has come, or was covered, had no light before the exchange. By that which it has now links may be worth
@@ -281,7 +287,7 @@ void LinkedRadiosity::follow(Pending pending, const LinkInterruption& interrupti
     watch.lap();
     done = look_at_pairs(pending, LinkScope::significant, interruption, update, &brighter);
     update.seconds_links += watch.lap();
-    shoot(update);
+    shoot(update, interruption.abandon);
   }
   update.pairs_left = pending.pairs.size();
   if (done) {
@@ -302,6 +308,7 @@ bool LinkedRadiosity::look_at_pairs(Pending& pending, LinkScope scope, const Lin
   how.moved = pending.moved;
   how.relit = pending.relit;
   how.stop = interruption.stop;
+  how.abandon = interruption.abandon;
   how.order = interruption.order;
   how.sources = sources;
   const bool begins = pending.pairs.empty();
@@ -385,7 +392,7 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
     LinkIndex links = std::move(links_);
     ClusterLinks clusters = std::move(clusters_);
     try {
-      update = build(interruption.stop);
+      update = build(interruption);
     } catch (...) {
       links_ = std::move(links);
       clusters_ = std::move(clusters);
@@ -410,14 +417,15 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
   follow(std::move(all), interruption, update);
 }
 
-std::vector<double> LinkedRadiosity::converged() const {
+std::vector<double> LinkedRadiosity::converged(const Abandon& abandon) const {
   LinkIndex links = links_;
   if (pending_) mark_pending(links);
   LinkTask all = task(LinkScope::values);
   all.any_stale = true;
+  all.abandon = abandon;
   update_links(all, links);
   NodeRadiosity radiosity = radiosity_;
-  radiosity.gather(links, clusters_, kConverged);
+  radiosity.gather(links, clusters_, kConverged, abandon);
   return {radiosity.B().begin(), radiosity.B().end()};
 }
 

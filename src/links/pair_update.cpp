@@ -105,7 +105,7 @@ PairUpdate::Need PairUpdate::need(const PatchPair& pair, std::span<const Link> l
   }
   if (moved || tests_all()) return Need::work;
   const bool stale = task_.any_stale && std::ranges::any_of(links, [](const Link& link) { return link.stale; });
-  if (!stale && !shadows_->may_change(pair.receiver, pair.source)) return Need::nothing;
+  if (!stale && !receiver.covered_anew && !shadows_->may_change(pair.receiver, pair.source)) return Need::nothing;
   const bool insignificant = links.front().energy < task_.B_eps && !receiver.covered_anew;
   return only_significant() && insignificant ? Need::skip : Need::work;
 }
@@ -224,7 +224,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (has_changed && !tests_all() && here.before && !has_stale && (judges || !touched_before)) {
       // Most shafts are not entered by what moved: that alone is asked first.
       touched = is_touched(here);
-      if (!touched && !touched_before) {
+      if (!touched && !touched_before && !covered_anew) {
         forget();
         return copy(old);
       }
@@ -239,7 +239,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     const bool asks = !only_significant() || !link.ghost || has_stale;
     if (asks) touched = has_changed && touches_changed(sight_of(here));
     const bool below_blocked = !root && (here.blocked || is_blocked(above->now));
-    here.affected = below_blocked ? above->affected : touched_before || touched;
+    here.affected = below_blocked ? above->affected : touched_before || touched || covered_anew;
     may_change = task_.scope != LinkScope::values && here.affected;
     evaluate = tests_all() || here.affected;
     if (!evaluate && !has_stale) {
@@ -356,7 +356,7 @@ void PairUpdate::add_leaf(const Ends& ends, LinkCode code, double form_factor, c
   link.ghost = false;
   if (link.blocked || form_factor == 0) {
     link.visibility = 0;
-  } else if (!link.open) {
+  } else if (!link.open || tree_.node(ends.receiver).covered) {  // the source's own solid may cover it
     link.visibility = sight_.visible_form_factor(ends.receiver, ends.source, sight) / form_factor;
     if (!tree_.node(ends.receiver).covered) link.visibility = std::min(1.0, link.visibility);
   }

@@ -205,7 +205,7 @@ void NodeRadiosity::find_luminance(std::uint32_t r) {
 }
 
 LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& clusters, double tolerance,
-                                   std::uint64_t most) {
+                                   const Abandon& abandon, std::uint64_t most) {
   struct OfRoot {
     std::vector<double> change, size;  ///< largest of each band
     double reflected = 0, w = 0;       ///< largest of what a sweep adds to w, and of w
@@ -273,6 +273,7 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& c
   result.factor = std::numeric_limits<double>::infinity();
   double best = result.factor;
   while (result.iterations < most) {
+    if (abandon && abandon()) throw Abandoned();
     if (!clusters.empty()) {
       clusters.gather(B_, bands_, of_clusters);
       if (bounding) clusters.gather(w_, 1, w_of_clusters);
@@ -323,7 +324,7 @@ void NodeRadiosity::receive(std::uint32_t node, double transfer, std::uint32_t s
   }
 }
 
-std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::uint64_t most) {
+std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, const Abandon& abandon, std::uint64_t most) {
   const std::size_t roots = tree_->roots().size();
   std::vector<double> energy(roots), unshot(roots);
   std::vector<std::uint8_t> shoots(roots);
@@ -369,6 +370,7 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
   });
   double brightest = 0;  // the most energy that there was: of a light that went out little stays
   for (std::uint64_t round = 0; round < most; ++round) {
+    if (abandon && abandon()) throw Abandoned();
     double all = 0, left = 0, largest = 0;
     for (std::uint32_t r = 0; r < roots; ++r) {
       if (!tree_->root(r).present) continue;
