@@ -177,6 +177,25 @@ TEST(CoveredArea, FollowsEdits) {
   }
 }
 
+// The lid that lies on the floor covers it also as seen from the sides of its solid, which do not move.
+TEST(CoveredArea, OfALidThatLeavesItsSolid) {
+  Scene scene = empty_room();
+  const std::vector<Surface> faces = box_faces({1.1, 1.2, 0}, {1.8, 1.9, 0.5}, 2, 0);
+  add(scene, "sides", {faces.begin() + 1, faces.end()});
+  add(scene, "lid", {faces.begin(), faces.begin() + 1});
+  LinkedRadiosity direct(scene, coarse()), hvt(scene, coarse());
+  for (LinkedRadiosity* links : {&direct, &hvt}) links->build();
+  EXPECT_NEAR(open_area_of(direct, 0, kFloor), 9 - 0.49, 1e-12);
+  for (const Operation operation : {Operation::remove, Operation::add}) {
+    const std::vector<Edit> edits{{operation, 2, {}, {}, {}}};
+    direct.update(edits, LinkMethod::direct);
+    hvt.update(edits, LinkMethod::hvt);
+    EXPECT_NEAR(open_area_of(hvt, 0, kFloor), operation == Operation::add ? 9 - 0.49 : 9, 1e-12);
+    EXPECT_TRUE(same_bits(direct.links(), hvt.links())) << name_of(operation);
+    EXPECT_TRUE(same_bits(direct.radiosity().B(), hvt.radiosity().B())) << name_of(operation);
+  }
+}
+
 // Without a threshold all differences are shot, those of means that only weigh their parts anew, too.
 TEST(CoveredArea, IsFollowedByProgressiveEnergyUpdate) {
   for (Case& c : cases()) {
