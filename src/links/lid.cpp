@@ -61,6 +61,10 @@ bool operator==(const Lid& a, const Lid& b) {
   return std::ranges::equal(a.sides, b.sides, {}, key, key);
 }
 
+bool operator<(const Lid& a, const Lid& b) {
+  return std::ranges::lexicographical_compare(a.sides, b.sides, {}, key, key);
+}
+
 std::vector<Lid> lids_on(const PolygonSoup& soup, const Contacts& contacts, std::uint32_t facet) {
   std::vector<Lid> lids;
   if (!contacts.may_be_covered(facet)) return lids;
@@ -69,9 +73,7 @@ std::vector<Lid> lids_on(const PolygonSoup& soup, const Contacts& contacts, std:
     const Facet& f = soup.facets()[t];
     lids.push_back(lid_of(soup.corners(f), normal, dot(f.plane.normal, normal) < 0));
   }
-  std::ranges::sort(lids, [](const Lid& a, const Lid& b) {
-    return std::ranges::lexicographical_compare(a.sides, b.sides, {}, key, key);
-  });
+  std::sort(lids.begin(), lids.end());
   return lids;
 }
 

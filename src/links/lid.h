@@ -20,10 +20,11 @@ struct Lid {
   bool covers(const Vec3& point) const;
 
   friend bool operator==(const Lid& a, const Lid& b);
+  friend bool operator<(const Lid& a, const Lid& b);
 };
 
-/// The facets that cover some of the front of one (Contacts), exactly in its plane or up to rounding, in an order that
-/// depends on where they lie only. What passes through a solid is not covered: that is a fault of the scene.
+/// The facets that cover some of the front of one (Contacts), exactly in its plane or up to rounding, ascending: in an
+/// order that depends on where they lie only. What passes through a solid is not covered: that is a fault of the scene.
 std::vector<Lid> lids_on(const PolygonSoup& soup, const Contacts& contacts, std::uint32_t facet);
 
 /// Area [m²] of a convex polygon in the plane that no lid covers, in double precision; 0 or all of it where less than

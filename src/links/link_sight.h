@@ -102,8 +102,8 @@ class LinkSight {
   /// Mean over the receiver's points of the form factor to the source as if nothing stood between.
   double form_factor(std::uint32_t receiver, std::uint32_t source);
   /// The same to what is seen of it, over points that nothing covers (PatchTree::open_points): what is covered sees
-  /// nothing and does not count. 0 where all is. REQUIRES: sight is theirs, among all items, and open only where the receiver is covered or
-  /// form_factor is not asked instead.
+  /// nothing and does not count. 0 where all is. REQUIRES: sight is theirs, among all items, and open only where the
+  /// receiver is covered or form_factor is not asked instead.
   double visible_form_factor(std::uint32_t receiver, std::uint32_t source, const Sight& sight);
 
   const SightWork& work() const { return work_; }

@@ -207,41 +207,52 @@ void PatchTree::cover(const PolygonSoup& soup, const Contacts& contacts) {
       for (Node& node : nodes) node.covered_anew = false;
     }
     if (!root.present) continue;
-    std::vector<Lid> lids = lids_on(soup, contacts, nodes.front().facet);
-    if (!root.placed && lids == lids_[r]) continue;
+    std::vector<Lid> lids = lids_on(soup, contacts, nodes.front().facet), changed;
+    if (root.placed) {
+      changed = lids;
+      for (Node& node : nodes) {
+        node.covered_anew = std::exchange(node.covered, false);
+        root.covered_anew = root.covered_anew || node.covered_anew;
+        node.open_area = node.area;
+      }
+    } else {
+      std::set_symmetric_difference(lids.begin(), lids.end(), lids_[r].begin(), lids_[r].end(),
+                                    std::back_inserter(changed));
+    }
     root.placed = false;
     lids_[r] = std::move(lids);
-    for (Node& node : nodes) {
-      node.covered_anew = std::exchange(node.covered, false);
-      node.open_area = node.area;
-    }
-    set_open_area(root.node_first, lids_[r]);
-    for (Node& node : nodes) {
-      node.covered_anew = node.covered_anew || node.covered;
-      root.covered_anew = root.covered_anew || node.covered_anew;
-    }
+    if (!changed.empty()) set_open_area(root.node_first, lids_[r], changed);
+    root.covered_anew = root.covered_anew || nodes.front().covered_anew;
   }
 }
 
-/// lids: all that may cover some of the node. Of one that has children: their sum.
-void PatchTree::set_open_area(std::uint32_t n, std::span<const Lid> lids) {
-  std::vector<Lid> on_node;
-  std::ranges::copy_if(lids, std::back_inserter(on_node),
-                       [&](const Lid& lid) { return overlaps(nodes_[n].loop(), nodes_[n].area, lid); });
-  if (on_node.empty()) return;
+/// lids: all that may cover some of the node; changed: those that do or did so and have come or gone. Of a node that
+/// has children it is their sum.
+void PatchTree::set_open_area(std::uint32_t n, std::span<const Lid> lids, std::span<const Lid> changed) {
   Node& node = nodes_[n];
+  const auto of_node = [&](std::span<const Lid> all) {
+    std::vector<Lid> found;
+    std::ranges::copy_if(all, std::back_inserter(found),
+                         [&](const Lid& lid) { return overlaps(node.loop(), node.area, lid); });
+    return found;
+  };
+  const std::vector<Lid> changed_here = of_node(changed);
+  if (changed_here.empty()) return;
+  const std::vector<Lid> lids_here = of_node(lids);
+  node.covered_anew = true;
   if (!node.has_children()) {
-    node.open_area = open_area(node.loop(), node.area, on_node);
+    node.open_area = open_area(node.loop(), node.area, lids_here);
     node.covered = node.open_area < node.area;
     return;
   }
   double open = 0;
+  node.covered = false;
   for (std::uint32_t child = node.first_child; child < node.first_child + 4; ++child) {
-    set_open_area(child, on_node);
+    set_open_area(child, lids_here, changed_here);
     open += nodes_[child].open_area;
     node.covered = node.covered || nodes_[child].covered;
   }
-  if (node.covered) node.open_area = open;
+  node.open_area = node.covered ? open : node.area;
 }
 
 void PatchTree::open_points(std::uint32_t n, unsigned per_edge, std::vector<NodePoint>& points) const {

@@ -93,7 +93,7 @@ class PatchTree {
   void append(const std::vector<Node>& root_nodes, const std::vector<std::uint32_t>& surfaces, std::uint32_t object);
   void place_children(std::uint32_t node);
   void number_facets(const PolygonSoup& soup, std::span<const PolygonSoup::PolygonRange> polygons);
-  void set_open_area(std::uint32_t node, std::span<const Lid> lids);
+  void set_open_area(std::uint32_t node, std::span<const Lid> lids, std::span<const Lid> changed);
 
   TreeOptions options_;
   std::vector<Node> nodes_;
