@@ -112,6 +112,7 @@ class LinkSight {
   void set_shaft(std::uint32_t receiver, std::uint32_t source);
   Sight select(std::span<const std::uint32_t> items);
   void keep_inherited(Sight& sight, const Sight& parent);
+  double unobstructed_form_factor(std::uint32_t receiver, std::uint32_t source);
 
   const PatchTree& tree_;
   const Obstacles& obstacles_;

@@ -50,6 +50,14 @@ double PairUpdate::most_energy(const Ends& ends) const {
          most_form_factor(tree_.node(ends.receiver), tree_.node(ends.source), task_.now->soup());
 }
 
+/// Whether a link's energy can neither have been more than B_eps, nor be now. Where what covers the receiver has
+/// changed, another part of it counts than before, on which all that its form factor says may fall.
+bool PairUpdate::is_insignificant(const Link& link) const {
+  const Node& to = tree_.node(link.destination);
+  const double concentrated = to.covered_anew && to.open_area > 0 ? to.area / to.open_area : 1;
+  return concentrated * link.energy < task_.B_eps;
+}
+
 bool PairUpdate::wants_refinement(const Ends& ends, LinkCode code, double energy, bool blocked) const {
   return !blocked && energy > task_.eps2 && divided_end(ends, code).has_value();
 }
@@ -106,8 +114,7 @@ PairUpdate::Need PairUpdate::need(const PatchPair& pair, std::span<const Link> l
   if (moved || tests_all()) return Need::work;
   const bool stale = task_.any_stale && std::ranges::any_of(links, [](const Link& link) { return link.stale; });
   if (!stale && !receiver.covered_anew && !shadows_->may_change(pair.receiver, pair.source)) return Need::nothing;
-  const bool insignificant = links.front().energy < task_.B_eps && !receiver.covered_anew;
-  return only_significant() && insignificant ? Need::skip : Need::work;
+  return only_significant() && is_insignificant(links.front()) ? Need::skip : Need::work;
 }
 
 double PairUpdate::stake(const PatchPair& pair, std::span<const Link> links) const {
@@ -204,9 +211,8 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     here.affected = evaluate = true;
     may_change = task_.scope != LinkScope::values;
   } else {
-    // Of a receiver that was covered or is, another part has counted until now.
+    if (only_significant() && is_insignificant(link)) return leave_stale();
     const bool covered_anew = tree_.node(ends.receiver).covered_anew;
-    if (only_significant() && link.energy < task_.B_eps && !covered_anew) return leave_stale();
     const bool has_changed = task_.before != nullptr;
     const bool has_stale = task_.any_stale && std::ranges::any_of(old, [](const Link& l) { return l.stale; });
     if (!has_changed && !tests_all() && !has_stale) return copy(old);
@@ -232,9 +238,8 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (judges && has_changed && (here.before || above->affected)) {
       // What moved in can only hide, what moved away only reveal.
       const double v = link.visibility;
-      double most = std::max(touched || !here.before ? v : 0, touched_before ? 1 - v : 0) * energy(ends, F);
-      if (covered_anew) most = std::max(link.energy, most_energy(ends));
-      if (most < task_.B_eps) return leave_stale();
+      const double most = std::max(touched || !here.before ? v : 0, touched_before ? 1 - v : 0) * energy(ends, F);
+      if (most < task_.B_eps && !covered_anew) return leave_stale();
     }
     const bool asks = !only_significant() || !link.ghost || has_stale;
     if (asks) touched = has_changed && touches_changed(sight_of(here));
