@@ -90,8 +90,8 @@ name = "Hall"
 unit = "W/m^2"
 
 [links]
-eps2 = 7.7e-5
-eps1 = 3.8e-5
+eps2 = 8.25e-5
+eps1 = 4.1e-5
 smallest_area = 0.015
 
 [camera]

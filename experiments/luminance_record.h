@@ -43,8 +43,12 @@ inline SolutionRecord luminance_record(SolutionRecord record) {
 
 /// The elements are those of links.elements(), in this order.
 inline SolutionRecord luminance_record(const LinkedRadiosity& links) {
+  const std::vector<double> weights = luminance_weights(links.radiosity().bands());
   std::vector<double> Y;
-  for (const std::uint32_t n : links.elements()) Y.push_back(links.radiosity().luminance()[n]);
+  for (const std::uint32_t n : links.elements()) {
+    Y.push_back(0);
+    for (std::uint32_t b = 0; b < weights.size(); ++b) Y.back() += weights[b] * links.radiosity().whole_B(n, b);
+  }
   return luminance_record(mesh_of(links), links.obstacles().soup(), std::move(Y));
 }
 

@@ -55,9 +55,9 @@ double power_lost_in_the_dark(const LinkedRadiosity& links, std::span<const doub
   std::vector<std::uint32_t> elements = links.elements();
   std::ranges::stable_sort(elements, {}, [&](std::uint32_t n) { return Y(truth, n); });
   double half = 0, power = 0, lost = 0;
-  for (const std::uint32_t n : elements) half += 0.5 * links.tree().node(n).area;
+  for (const std::uint32_t n : elements) half += 0.5 * links.tree().node(n).open_area;
   for (const std::uint32_t n : elements) {
-    const double area = links.tree().node(n).area;
+    const double area = links.tree().node(n).open_area;
     if ((half -= area) < 0) break;
     power += area * Y(truth, n);
     lost += area * (Y(truth, n) - Y(B, n));

@@ -168,6 +168,7 @@ class Dynamic {
       how.images = images_;
       how.image_size = image_size_;
       how.stop = [this] { return stop(); };
+      how.abandon = interrupted;
       how.finished = [this](const LinkFrames& so_far) {
         frames_ = so_far.frames;
         summary_ = so_far.summary;

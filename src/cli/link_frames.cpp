@@ -72,6 +72,7 @@ class Frames {
     by_budget = by_budget && options_.budget;
     if (!by_budget) how.order = LinkOrder::any;
     const auto start = std::chrono::steady_clock::now();
+    how.abandon = options_.abandon;
     how.stop = [this, start, by_budget] {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
       return (by_budget && spent.count() >= *options_.budget) || (options_.stop && options_.stop());
@@ -90,7 +91,7 @@ class Frames {
     const std::span<const double> B = links_.radiosity().B();
     std::optional<ConvergenceError> error;
     if (options_.references) {
-      const std::vector<double> reference = links_.converged();
+      const std::vector<double> reference = links_.converged(options_.abandon);
       error = link_error(links_.tree(), elements, links_.radiosity().bands(), reference, reference_before_, B);
       reference_before_ = reference;
     }
@@ -150,8 +151,7 @@ class Frames {
     for (const std::uint32_t n : elements) {
       const std::uint32_t root = links_.tree().node(n).root;
       const auto E = links_.radiosity().E().subspan(std::size_t{root} * bands, bands);
-      const auto of_node = links_.radiosity().B().subspan(std::size_t{n} * bands, bands);
-      B.insert(B.end(), of_node.begin(), of_node.end());
+      for (std::uint32_t b = 0; b < bands; ++b) B.push_back(links_.radiosity().whole_B(n, b));
       emits.push_back(std::ranges::any_of(E, [](double value) { return value > 0; }));
     }
     write_frame(folder_, given_, {result_.frames.size(), time, faces, bands, B}, [&](const Camera& camera) {
@@ -177,7 +177,11 @@ std::optional<LinkMethod> link_method_named(const std::string& name) {
 }
 
 LinksEnd follow_links(const DynamicScene& given, const LinkFrameOptions& options, const std::filesystem::path& folder) {
-  return Frames(given, options, folder).follow();
+  try {
+    return Frames(given, options, folder).follow();
+  } catch (const Abandoned&) {
+    return LinksEnd::unfinished;
+  }
 }
 
 }  // namespace exitance

@@ -113,22 +113,28 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
   const std::vector<std::uint32_t> elements = links.elements();
   s.patches.B.resize(s.mesh.patches.size() * bands);
   s.patches.H.resize(s.patches.B.size());
-  std::vector<double> patch_row_sum(s.mesh.patches.size());
+  std::vector<double> patch_row_sum(s.mesh.patches.size()), patch_open(s.mesh.patches.size());
   const std::vector<double> row_sum = row_sums(links.links(), links.cluster_links(), links.tree());
-  // A leaf below an element receives what the element does.
+  // A leaf below an element receives what the element does, as far as it is open.
   for (std::size_t e = 0; e < elements.size(); ++e) {
     std::uint32_t leaf = elements[e];
     while (links.tree().node(leaf).has_children()) leaf = links.tree().node(leaf).first_child;
+    const double open = links.tree().node(elements[e]).open_area / links.tree().node(elements[e]).area;
     const std::uint32_t p = s.mesh.elements[e].patch;
     const double share = s.mesh.elements[e].area / s.mesh.patches[p].area;
     for (std::uint32_t b = 0; b < bands; ++b) {
-      s.element_H.push_back(links.radiosity().leaf_H(leaf)[b]);
-      s.element_B.push_back(links.radiosity().B()[std::size_t{elements[e]} * bands + b]);
+      s.element_H.push_back(open * links.radiosity().leaf_H(leaf)[b]);
+      s.element_B.push_back(links.radiosity().whole_B(elements[e], b));
       s.patches.H[std::size_t{p} * bands + b] += share * s.element_H.back();
       s.patches.B[std::size_t{p} * bands + b] += share * s.element_B.back();
     }
-    s.element_row_sum.push_back(row_sum[leaf]);
+    s.element_row_sum.push_back(open * row_sum[leaf]);
     patch_row_sum[p] += share * s.element_row_sum.back();
+    patch_open[p] += share * open;
+  }
+  // What leaves a patch leaves its open part.
+  for (std::size_t p = 0; p < patch_open.size(); ++p) {
+    if (patch_open[p] > 0) patch_row_sum[p] /= patch_open[p];
   }
   s.patches.iterations = result.update.exchange.iterations;
   s.patches.residual = result.update.exchange.residual;

@@ -21,7 +21,8 @@ struct PendingPair {
 /// Brings the links up to date, in parallel; the same bits for any number of threads. What a task leaves of a pair of
 /// patches depends on these, the scene, the links that they had, and the luminances (PairUpdate): `all` and
 /// `hierarchical` leave the same. With `differences`, what links bring more than before is handed to it
-/// (NodeRadiosity::receive). Throws LimitError when there are more links than the task allows; some are then done.
+/// (NodeRadiosity::receive). Throws LimitError when there are more links than the task allows, and Abandoned; some are
+/// then done.
 ///
 /// With `pending`, a task can be interrupted (LinkTask::stop): it works on pairs in its order, 32 at a time or those of
 /// a patch, and on all that has to go, and leaves in `pending` those that it did not come to. Called again with these,

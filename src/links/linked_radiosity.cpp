@@ -75,7 +75,9 @@ LinkedRadiosity::LinkedRadiosity(Scene scene, const LinkOptions& options)
       tree_(scene_, obstacles_->soup(), {options_.mesh, options_.smallest_area}),
       radiosity_(tree_, scene_),
       links_(tree_.roots().size()),
-      brightest_(largest_emission(scene_.scene())) {}
+      brightest_(largest_emission(scene_.scene())) {
+  tree_.cover(obstacles_->soup(), obstacles_->contacts());
+}
 
 LinkTask LinkedRadiosity::task(LinkScope scope) const {
   LinkTask task;
@@ -99,22 +101,27 @@ std::uint64_t LinkedRadiosity::bytes_left() const {
   return options_.mesh.memory_limit - std::min(options_.mesh.memory_limit, taken);
 }
 
-void LinkedRadiosity::gather(LinkUpdate& update) {
+void LinkedRadiosity::gather(LinkUpdate& update, const Abandon& abandon) {
   RunClock watch;
-  update.exchange = radiosity_.gather(links_, clusters_, options_.tolerance);
+  update.exchange = radiosity_.gather(links_, clusters_, options_.tolerance, abandon);
   update.seconds_exchange += watch.lap();
 }
 
 /// Only what differs from before.
-void LinkedRadiosity::shoot(LinkUpdate& update) {
+void LinkedRadiosity::shoot(LinkUpdate& update, const Abandon& abandon) {
   RunClock watch;
-  const std::uint64_t rounds = radiosity_.shoot(links_, options_.tolerance);
+  const std::uint64_t rounds = radiosity_.shoot(links_, options_.tolerance, abandon);
   update.exchange.iterations += rounds;
   update.exchange.converged = rounds < kMostExchanges;
   update.seconds_exchange += watch.lap();
 }
 
 LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
+  return build(LinkInterruption{stop, LinkOrder::any, {}});
+}
+
+LinkUpdate LinkedRadiosity::build(const LinkInterruption& interruption) {
+  const std::function<bool()>& stop = interruption.stop;
   RunClock whole;
   LinkUpdate update;
   links_ = LinkIndex(tree_.roots().size());
@@ -136,6 +143,7 @@ LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
     }
     LinkTask refinement = task(LinkScope::refinement);
     refinement.stop = ends;
+    refinement.abandon = interruption.abandon;
     if (options_.clusters) {
       refinement.new_pairs = &of_clusters.pairs;
       refinement.most_links -=
@@ -151,10 +159,10 @@ LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
       break;
     }
     ++update.rounds;
-    radiosity_.gather(links_, clusters_, kWhileBuilding);
+    radiosity_.gather(links_, clusters_, kWhileBuilding, interruption.abandon);
     update.seconds_exchange += watch.lap();
   }
-  gather(update);
+  gather(update, interruption.abandon);
   judge_all();
   update.seconds = whole.seconds();
   update.cpu_seconds = whole.cpu_seconds();
@@ -262,9 +270,9 @@ void LinkedRadiosity::follow(Pending pending, const LinkInterruption& interrupti
     pending.stage = Stage::new_light;
   update.seconds_links += watch.lap();
   if (shoots) {
-    shoot(update);
+    shoot(update, interruption.abandon);
   } else {
-    gather(update);
+    gather(update, interruption.abandon);
   }
   bool done = pending.stage == Stage::new_light;
   // What has come, or was covered, had no light before the exchange. By that which it has now links may be worth
@@ -279,7 +287,7 @@ void LinkedRadiosity::follow(Pending pending, const LinkInterruption& interrupti
     watch.lap();
     done = look_at_pairs(pending, LinkScope::significant, interruption, update, &brighter);
     update.seconds_links += watch.lap();
-    shoot(update);
+    shoot(update, interruption.abandon);
   }
   update.pairs_left = pending.pairs.size();
   if (done) {
@@ -300,6 +308,7 @@ bool LinkedRadiosity::look_at_pairs(Pending& pending, LinkScope scope, const Lin
   how.moved = pending.moved;
   how.relit = pending.relit;
   how.stop = interruption.stop;
+  how.abandon = interruption.abandon;
   how.order = interruption.order;
   how.sources = sources;
   const bool begins = pending.pairs.empty();
@@ -372,6 +381,8 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
       tree_.change_geometry(scene_, obstacles_->soup(), obstacles_->polygons(), object);
       radiosity_.change_geometry(scene_, object);
     }
+    tree_.cover(obstacles_->soup(), obstacles_->contacts());
+    radiosity_.change_covering();
   }
   for (std::uint32_t object = 0; object < objects; ++object) {
     if (relit[object] != 0) radiosity_.change_materials(scene_, object);
@@ -381,7 +392,7 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
     LinkIndex links = std::move(links_);
     ClusterLinks clusters = std::move(clusters_);
     try {
-      update = build(interruption.stop);
+      update = build(interruption);
     } catch (...) {
       links_ = std::move(links);
       clusters_ = std::move(clusters);
@@ -406,14 +417,15 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
   follow(std::move(all), interruption, update);
 }
 
-std::vector<double> LinkedRadiosity::converged() const {
+std::vector<double> LinkedRadiosity::converged(const Abandon& abandon) const {
   LinkIndex links = links_;
   if (pending_) mark_pending(links);
   LinkTask all = task(LinkScope::values);
   all.any_stale = true;
+  all.abandon = abandon;
   update_links(all, links);
   NodeRadiosity radiosity = radiosity_;
-  radiosity.gather(links, clusters_, kConverged);
+  radiosity.gather(links, clusters_, kConverged, abandon);
   return {radiosity.B().begin(), radiosity.B().end()};
 }
 
@@ -455,7 +467,7 @@ std::vector<std::uint32_t> LinkedRadiosity::elements() const {
 ConvergenceError link_error(const PatchTree& tree, std::span<const std::uint32_t> elements, std::uint32_t bands,
                             std::span<const double> reference, std::span<const double> was,
                             std::span<const double> current) {
-  const auto area = [&](std::uint32_t n) { return tree.node(n).area; };
+  const auto area = [&](std::uint32_t n) { return tree.node(n).open_area; };
   return convergence_error(elements, area, bands, reference, was, current);
 }
 

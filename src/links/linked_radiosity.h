@@ -61,6 +61,8 @@ struct LinkInterruption {
   /// exchanged all the same: neither that, nor finding the pairs that are to be looked at, ends early.
   std::function<bool()> stop;
   LinkOrder order = LinkOrder::importance;
+  /// Asked throughout, between patches and sweeps, by any thread: once it is true the update throws Abandoned.
+  std::function<bool()> abandon;
 };
 
 class LinkedRadiosity {
@@ -86,15 +88,17 @@ class LinkedRadiosity {
   /// Edits that happen at once. What an interrupted update leaves keeps its links as they were, until work_off, which
   /// leaves the links that the update would have left, or marked stale until later updates. Rebuilding ends early as
   /// build does (LinkUpdate::stopped), and nothing goes on with it. All or nothing: throws
-  /// InvalidEdit, what PatchTree throws, and what `stop` does, LimitError when there would be too many links,
-  /// std::invalid_argument for clusters with another method than rebuild, and is then as before. REQUIRES: built.
+  /// InvalidEdit, what PatchTree throws, Abandoned and what `stop` and `abandon` throw, LimitError when there would be
+  /// too many links, std::invalid_argument for clusters with another method than rebuild, and is then as before.
+  /// REQUIRES: built.
   LinkUpdate update(std::span<const Edit> edits, LinkMethod method, const LinkInterruption& interruption = {});
 
   /// Goes on with what the last update left, the same way. REQUIRES: built.
   LinkUpdate work_off(const LinkInterruption& interruption = {});
 
-  /// B by node and band of the same links, with every value as the scene has it, converged to 1e-12 of max B.
-  std::vector<double> converged() const;
+  /// B by node and band of the same links, with every value as the scene has it, converged to 1e-12 of max B. Throws
+  /// Abandoned as updates do.
+  std::vector<double> converged(const Abandon& abandon = {}) const;
 
   /// The nodes that links divide patches into, whole patches included: by node, whether a link ends there or below.
   /// Only of what is there.
@@ -123,6 +127,7 @@ class LinkedRadiosity {
   };
 
   LinkTask task(LinkScope scope) const;
+  LinkUpdate build(const LinkInterruption& interruption);
   std::uint64_t bytes_left() const;
   template <class Work>
   LinkUpdate all_or_nothing(const Work& work);
@@ -133,8 +138,8 @@ class LinkedRadiosity {
   void judge_all();
   std::vector<std::uint32_t> judge_what_is_brighter();
   void mark_pending(LinkIndex& links) const;
-  void gather(LinkUpdate& update);
-  void shoot(LinkUpdate& update);
+  void gather(LinkUpdate& update, const Abandon& abandon);
+  void shoot(LinkUpdate& update, const Abandon& abandon);
 
   LinkOptions options_;
   EditedScene scene_;
@@ -150,7 +155,7 @@ class LinkedRadiosity {
   std::optional<Pending> pending_;
 };
 
-/// Equation 7 over elements(). By node and band: the reference, what it was before and what it is.
+/// Equation 7 over what is open of elements(). By node and band: the reference, what it was before and what it is.
 ConvergenceError link_error(const PatchTree& tree, std::span<const std::uint32_t> elements, std::uint32_t bands,
                             std::span<const double> reference, std::span<const double> was,
                             std::span<const double> current);

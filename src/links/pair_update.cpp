@@ -44,6 +44,20 @@ double PairUpdate::energy(const Ends& ends, double form_factor) const {
          judged_form_factor(tree_.node(ends.receiver), tree_.node(ends.source), form_factor);
 }
 
+/// At any point of the receiver.
+double PairUpdate::most_energy(const Ends& ends) const {
+  return task_.luminance[ends.source] *
+         most_form_factor(tree_.node(ends.receiver), tree_.node(ends.source), task_.now->soup());
+}
+
+/// Whether a link's energy can neither have been more than B_eps, nor be now. Where what covers the receiver has
+/// changed, another part of it counts than before, on which all that its form factor says may fall.
+bool PairUpdate::is_insignificant(const Link& link) const {
+  const Node& to = tree_.node(link.destination);
+  const double concentrated = to.covered_anew && to.open_area > 0 ? to.area / to.open_area : 1;
+  return concentrated * link.energy < task_.B_eps;
+}
+
 bool PairUpdate::wants_refinement(const Ends& ends, LinkCode code, double energy, bool blocked) const {
   return !blocked && energy > task_.eps2 && divided_end(ends, code).has_value();
 }
@@ -99,8 +113,8 @@ PairUpdate::Need PairUpdate::need(const PatchPair& pair, std::span<const Link> l
   }
   if (moved || tests_all()) return Need::work;
   const bool stale = task_.any_stale && std::ranges::any_of(links, [](const Link& link) { return link.stale; });
-  if (!stale && !shadows_->may_change(pair.receiver, pair.source)) return Need::nothing;
-  return only_significant() && links.front().energy < task_.B_eps ? Need::skip : Need::work;
+  if (!stale && !receiver.covered_anew && !shadows_->may_change(pair.receiver, pair.source)) return Need::nothing;
+  return only_significant() && is_insignificant(links.front()) ? Need::skip : Need::work;
 }
 
 double PairUpdate::stake(const PatchPair& pair, std::span<const Link> links) const {
@@ -189,8 +203,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (!face_each_other(ends)) return;
     const double Y = task_.luminance[ends.source];
     if (only_significant() && !link.ghost && Y * link.transfer() < task_.B_eps) {
-      const Node &to = tree_.node(ends.receiver), &from = tree_.node(ends.source);
-      if (Y * most_form_factor(to, from, task_.now->soup()) < task_.B_eps) return leave_stale();
+      if (most_energy(ends) < task_.B_eps) return leave_stale();
     }
     F = sight_.form_factor(ends.receiver, ends.source);
     const double most = std::max(energy(ends, F), Y * link.transfer());
@@ -198,7 +211,8 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     here.affected = evaluate = true;
     may_change = task_.scope != LinkScope::values;
   } else {
-    if (only_significant() && link.energy < task_.B_eps) return leave_stale();
+    if (only_significant() && is_insignificant(link)) return leave_stale();
+    const bool covered_anew = tree_.node(ends.receiver).covered_anew;
     const bool has_changed = task_.before != nullptr;
     const bool has_stale = task_.any_stale && std::ranges::any_of(old, [](const Link& l) { return l.stale; });
     if (!has_changed && !tests_all() && !has_stale) return copy(old);
@@ -216,7 +230,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (has_changed && !tests_all() && here.before && !has_stale && (judges || !touched_before)) {
       // Most shafts are not entered by what moved: that alone is asked first.
       touched = is_touched(here);
-      if (!touched && !touched_before) {
+      if (!touched && !touched_before && !covered_anew) {
         forget();
         return copy(old);
       }
@@ -224,13 +238,13 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (judges && has_changed && (here.before || above->affected)) {
       // What moved in can only hide, what moved away only reveal.
       const double v = link.visibility;
-      const double most = std::max(touched || !here.before ? v : 0, touched_before ? 1 - v : 0);
-      if (most * energy(ends, F) < task_.B_eps) return leave_stale();
+      const double most = std::max(touched || !here.before ? v : 0, touched_before ? 1 - v : 0) * energy(ends, F);
+      if (most < task_.B_eps && !covered_anew) return leave_stale();
     }
     const bool asks = !only_significant() || !link.ghost || has_stale;
     if (asks) touched = has_changed && touches_changed(sight_of(here));
     const bool below_blocked = !root && (here.blocked || is_blocked(above->now));
-    here.affected = below_blocked ? above->affected : touched_before || touched;
+    here.affected = below_blocked ? above->affected : touched_before || touched || covered_anew;
     may_change = task_.scope != LinkScope::values && here.affected;
     evaluate = tests_all() || here.affected;
     if (!evaluate && !has_stale) {
@@ -345,13 +359,13 @@ Link PairUpdate::ghost(const Ends& ends, LinkCode code, double form_factor, cons
 void PairUpdate::add_leaf(const Ends& ends, LinkCode code, double form_factor, const Sight& sight) {
   Link link = ghost(ends, code, form_factor, sight);
   link.ghost = false;
-  link.energy = energy(ends, form_factor);
   if (link.blocked || form_factor == 0) {
     link.visibility = 0;
-  } else if (!link.open) {
-    const double seen = sight_.visible_form_factor(ends.receiver, ends.source, sight);
-    link.visibility = std::min(1.0, seen / form_factor);
+  } else if (!link.open || tree_.node(ends.receiver).covered) {  // the source's own solid may cover it
+    link.visibility = sight_.visible_form_factor(ends.receiver, ends.source, sight) / form_factor;
+    if (!tree_.node(ends.receiver).covered) link.visibility = std::min(1.0, link.visibility);
   }
+  link.energy = energy(ends, link.possible_transfer());
   ++work_.links_updated;
   out_.push_back(link);
 }

@@ -66,6 +66,8 @@ class PairUpdate {
   bool has_moved(const Root& root) const { return !task_.moved.empty() && task_.moved[root.object] != 0; }
   bool face_each_other(const Ends& ends) const;
   double energy(const Ends& ends, double form_factor) const;
+  double most_energy(const Ends& ends) const;
+  bool is_insignificant(const Link& link) const;
   std::optional<LinkCode::End> divided_end(const Ends& ends, LinkCode code) const;
   Ends child(const Ends& ends, LinkCode::End end, unsigned k) const;
   bool wants_refinement(const Ends& ends, LinkCode code, double energy, bool blocked) const;

@@ -13,7 +13,7 @@ PatchClusters::PatchClusters(const PatchTree& tree, const PolygonSoup& soup)
     for (const Vec3& v : node.loop()) boxes[r].extend(v);
     std::vector<NodePoint> middle;
     node_points(node, 1, middle);
-    places_[r] = {middle.front().at, normalized(soup.facets()[node.facet].plane.normal), node.area};
+    places_[r] = {middle.front().at, normalized(soup.facets()[node.facet].plane.normal), node.open_area};
     roots_.push_back(r);
   }
   if (roots_.empty()) return;

@@ -26,7 +26,7 @@ struct Cluster {
 /// Where a patch is, as seen from afar.
 struct PatchPlace {
   Vec3 middle, normal;  ///< unit
-  double area = 0;      ///< [m²]
+  double area = 0;      ///< [m²] of it that nothing covers
 };
 
 /// Top-down. A patch whose box is more than half as long as its cluster's is parted from those that are smaller, so

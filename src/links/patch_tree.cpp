@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -19,6 +20,7 @@ constexpr std::size_t kMostNodes = std::size_t{1} << 31;
 constexpr double kFlat = 0x1p-40;
 /// Relative change of a root's area up to which its nodes remain as they are.
 constexpr double kSameArea = 1e-6;
+constexpr unsigned kMostPointsAnEdge = 20;
 
 double area_of(const Node& node) {
   Vec3 sum;
@@ -96,7 +98,7 @@ std::vector<Node> PatchTree::root_nodes(const EditedScene& scene, const PolygonS
         node.corner = {loop[0], loop[k], loop[k + 1], node.corners == 4 ? loop[k + 2] : Vec3{}};
         node.whole = piece.loop_count == 0 && loop.size() == node.corners;
         node.facet = piece.facet;
-        node.area = area_of(node);
+        node.area = node.open_area = area_of(node);
         if (node.area <= kFlat * piece.area) continue;
         roots.push_back(node);
         surfaces.push_back(patch.surface - range.first);
@@ -115,7 +117,7 @@ void PatchTree::append(const std::vector<Node>& root_nodes, const std::vector<st
     root.node_first = static_cast<std::uint32_t>(nodes_.size());
     root.object = object;
     root.surface = surfaces[r];
-    root.present = true;
+    root.present = root.placed = true;
     nodes_.push_back(root_nodes[r]);
     nodes_.back().root = static_cast<std::uint32_t>(roots_.size());
     for (std::size_t n = root.node_first; n < nodes_.size(); ++n) {
@@ -145,7 +147,7 @@ void PatchTree::place_children(std::uint32_t node) {
   for (unsigned k = 0; k < 4; ++k) {
     Node& child = nodes_[nodes_[node].first_child + k];
     child.corner = corners_of_child(nodes_[node], k);
-    child.area = area_of(child);
+    child.area = child.open_area = area_of(child);
   }
 }
 
@@ -182,10 +184,10 @@ void PatchTree::change_geometry(const EditedScene& scene, const PolygonSoup& sou
     append(placed, surfaces, object);
   } else {
     for (std::size_t r = 0; r < placed.size(); ++r) {
-      roots[r].present = true;
+      roots[r].present = roots[r].placed = true;
       Node& node = nodes_[roots[r].node_first];
       node.corner = placed[r].corner;
-      node.area = placed[r].area;
+      node.area = node.open_area = placed[r].area;
       for (std::uint32_t k = 0; k < roots[r].node_count; ++k) {
         nodes_[roots[r].node_first + k].facet = placed[r].facet;
         if (nodes_[roots[r].node_first + k].has_children()) place_children(roots[r].node_first + k);
@@ -194,6 +196,78 @@ void PatchTree::change_geometry(const EditedScene& scene, const PolygonSoup& sou
   }
   facet_first_[object] = soup.first_facet(polygons[object].first);
   number_facets(soup, polygons);
+}
+
+void PatchTree::cover(const PolygonSoup& soup, const Contacts& contacts) {
+  lids_.resize(roots_.size());
+  for (std::uint32_t r = 0; r < roots_.size(); ++r) {
+    Root& root = roots_[r];
+    const auto nodes = std::span(nodes_).subspan(root.node_first, root.node_count);
+    if (std::exchange(root.covered_anew, false)) {
+      for (Node& node : nodes) node.covered_anew = false;
+    }
+    if (!root.present) continue;
+    std::vector<Lid> lids = lids_on(soup, contacts, nodes.front().facet), changed;
+    if (root.placed) {
+      changed = lids;
+      for (Node& node : nodes) {
+        node.covered_anew = std::exchange(node.covered, false);
+        root.covered_anew = root.covered_anew || node.covered_anew;
+        node.open_area = node.area;
+      }
+    } else {
+      std::set_symmetric_difference(lids.begin(), lids.end(), lids_[r].begin(), lids_[r].end(),
+                                    std::back_inserter(changed));
+    }
+    root.placed = false;
+    lids_[r] = std::move(lids);
+    if (!changed.empty()) set_open_area(root.node_first, lids_[r], changed);
+    root.covered_anew = root.covered_anew || nodes.front().covered_anew;
+  }
+}
+
+/// lids: all that may cover some of the node; changed: those that do or did so and have come or gone. Of a node that
+/// has children it is their sum.
+void PatchTree::set_open_area(std::uint32_t n, std::span<const Lid> lids, std::span<const Lid> changed) {
+  Node& node = nodes_[n];
+  const auto of_node = [&](std::span<const Lid> all) {
+    std::vector<Lid> found;
+    std::ranges::copy_if(all, std::back_inserter(found),
+                         [&](const Lid& lid) { return overlaps(node.loop(), node.area, lid); });
+    return found;
+  };
+  const std::vector<Lid> changed_here = of_node(changed);
+  if (changed_here.empty()) return;
+  const std::vector<Lid> lids_here = of_node(lids);
+  node.covered_anew = true;
+  if (!node.has_children()) {
+    node.open_area = open_area(node.loop(), node.area, lids_here);
+    node.covered = node.open_area < node.area;
+    return;
+  }
+  double open = 0;
+  node.covered = false;
+  for (std::uint32_t child = node.first_child; child < node.first_child + 4; ++child) {
+    set_open_area(child, lids_here, changed_here);
+    open += nodes_[child].open_area;
+    node.covered = node.covered || nodes_[child].covered;
+  }
+  node.open_area = node.covered ? open : node.area;
+}
+
+void PatchTree::open_points(std::uint32_t n, unsigned per_edge, std::vector<NodePoint>& points) const {
+  const Node& node = nodes_[n];
+  if (!node.covered) return node_points(node, per_edge, points);
+  points.clear();
+  for (unsigned rule = per_edge; points.empty() && node.open_area > 0 && rule <= kMostPointsAnEdge; rule *= 2) {
+    node_points(node, rule, points);
+    std::erase_if(points, [&](const NodePoint& p) {
+      return std::ranges::any_of(lids_[node.root], [&](const Lid& lid) { return lid.covers(p.at); });
+    });
+  }
+  double sum = 0;
+  for (const NodePoint& p : points) sum += p.weight;
+  for (NodePoint& p : points) p.weight /= sum;
 }
 
 void node_points(const Node& node, unsigned per_edge, std::vector<NodePoint>& points) {

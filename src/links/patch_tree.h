@@ -9,6 +9,7 @@
 #include "geometry/polygon_soup.h"
 #include "geometry/shaft.h"
 #include "geometry/viewpoint.h"
+#include "src/links/lid.h"
 #include "src/scene/edit.h"
 #include "src/scene/patch_mesh.h"
 
@@ -20,11 +21,14 @@ struct Node {
   std::uint8_t corners = 4;    ///< 3 or 4
   std::uint8_t level = 0;      ///< 0: a root
   bool whole = false;          ///< all of its facet
+  bool covered = false;        ///< some of it, by what lies on it
+  bool covered_anew = false;   ///< it is or was, and by other things or at other places since the last edits
   std::uint32_t facet = 0;     ///< of the soup
   std::uint32_t root = 0;      ///< of the tree
   std::uint32_t parent = kNone;
   std::uint32_t first_child = kNone;  ///< of four, which stand side by side; kNone: none
   double area = 0;                    ///< [m²]
+  double open_area = 0;               ///< [m²] what of it nothing covers
 
   std::span<const Vec3> loop() const { return {corner.data(), corners}; }
   bool has_children() const { return first_child != kNone; }
@@ -36,6 +40,14 @@ struct Root {
   std::uint32_t object = 0;
   std::uint32_t surface = 0;  ///< within its object
   bool present = false;       ///< false: of an object that is not there, or has become others
+  bool placed = false;        ///< since it was last seen what covers it
+  bool covered_anew = false;  ///< some node is
+};
+
+/// A place from which a node receives, and its share of the node's area.
+struct NodePoint {
+  Vec3 at;
+  double weight = 0;
 };
 
 /// Where nodes end: a node whose quarters would be smaller than this on average has no children [m², > 0].
@@ -60,6 +72,13 @@ class PatchTree {
   void change_geometry(const EditedScene& scene, const PolygonSoup& soup,
                        std::span<const PolygonSoup::PolygonRange> polygons, std::uint32_t object);
 
+  /// Finds what covers the nodes of a scene, once it was made and when all edits of its geometry have been followed:
+  /// exactly by clipping, of what lies exactly or but for rounding in their planes. Contacts are those of the soup.
+  void cover(const PolygonSoup& soup, const Contacts& contacts);
+  /// The points by which a node receives: those of node_points that nothing covers, or where there are none of twice,
+  /// four times … as many an edge, up to 20. Their weights sum to 1; none where nothing, or next to it, is open.
+  void open_points(std::uint32_t node, unsigned per_edge, std::vector<NodePoint>& points) const;
+
   std::span<const Node> nodes() const { return nodes_; }
   std::span<const Root> roots() const { return roots_; }
   const Node& node(std::uint32_t n) const { return nodes_[n]; }
@@ -74,18 +93,14 @@ class PatchTree {
   void append(const std::vector<Node>& root_nodes, const std::vector<std::uint32_t>& surfaces, std::uint32_t object);
   void place_children(std::uint32_t node);
   void number_facets(const PolygonSoup& soup, std::span<const PolygonSoup::PolygonRange> polygons);
+  void set_open_area(std::uint32_t node, std::span<const Lid> lids, std::span<const Lid> changed);
 
   TreeOptions options_;
   std::vector<Node> nodes_;
   std::vector<Root> roots_;
+  std::vector<std::vector<Lid>> lids_;                  ///< by root
   std::vector<std::uint32_t> root_first_, root_count_;  ///< by object
   std::vector<std::uint32_t> facet_first_;              ///< by object, in the soup of the facets as they are numbered
-};
-
-/// A place from which a node receives, and its share of the node's area.
-struct NodePoint {
-  Vec3 at;
-  double weight = 0;
 };
 
 /// per_edge² points of the Gauss product rule, weighted by area, in a fixed order; of a triangle the rule of a

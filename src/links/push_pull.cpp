@@ -68,6 +68,7 @@ void NodeRadiosity::fit_arrays() {
   for (auto* values : {&rho_, &E_}) values->resize(roots * bands_);
   has_received_.resize(roots);
   there_.resize(roots);
+  weighs_anew_.resize(roots);
 }
 
 void NodeRadiosity::set_materials(const EditedScene& scene, std::uint32_t object) {
@@ -120,36 +121,77 @@ void NodeRadiosity::change_materials(const EditedScene& scene, std::uint32_t obj
   for (std::uint32_t r = 0; r < tree_->roots().size(); ++r) {
     const Root& root = tree_->root(r);
     if (root.object != object || !root.present) continue;
-    for (std::uint32_t n = root.node_first; n < root.node_first + root.node_count; ++n) {
-      if (tree_->node(n).has_children()) continue;
-      for (std::uint32_t b = 0; b < bands_; ++b) {
-        const std::size_t i = std::size_t{n} * bands_ + b, of_root = std::size_t{r} * bands_ + b;
-        const double B = E_[of_root] + rho_[of_root] * H_[i];
-        unshot_[i] += B - B_[i];
-        B_[i] = B;
-      }
-    }
-    pull(r, B_, bands_);
-    pull(r, unshot_, bands_);
-    find_luminance(r);
+    renew(r);
   }
+}
+
+void NodeRadiosity::change_covering() {
+  for (std::uint32_t r = 0; r < tree_->roots().size(); ++r) {
+    if (!tree_->root(r).present || !tree_->root(r).covered_anew) continue;
+    renew(r);
+    weighs_anew_[r] = 1;
+  }
+}
+
+/// B by E, ρ, H and what is covered; what that changes is unshot.
+void NodeRadiosity::renew(std::uint32_t r) {
+  const Root& root = tree_->root(r);
+  for (std::uint32_t n = root.node_first; n < root.node_first + root.node_count; ++n) {
+    if (tree_->node(n).has_children()) continue;
+    for (std::uint32_t b = 0; b < bands_; ++b) {
+      const std::size_t i = std::size_t{n} * bands_ + b;
+      const double B = B_of_leaf(n, b);
+      unshot_[i] += B - B_[i];
+      B_[i] = B;
+    }
+  }
+  pull_changes(r);
+  find_luminance(r);
+}
+
+double NodeRadiosity::B_of_leaf(std::uint32_t n, std::uint32_t band) const {
+  const Node& node = tree_->node(n);
+  const std::size_t of_root = std::size_t{node.root} * bands_ + band;
+  return node.open_area > 0 ? E_[of_root] + rho_[of_root] * H_[std::size_t{n} * bands_ + band] : E_[of_root];
+}
+
+double NodeRadiosity::whole_B(std::uint32_t n, std::uint32_t band) const {
+  const Node& node = tree_->node(n);
+  const double B = B_[std::size_t{n} * bands_ + band];
+  if (!node.covered) return B;
+  const double E = E_[std::size_t{node.root} * bands_ + band];
+  return E + node.open_area / node.area * (B - E);
 }
 
 /// Means over children, from the leaves up.
 void NodeRadiosity::pull(std::uint32_t r, std::vector<double>& values, std::size_t bands) {
+  pull(r, values, bands, [](std::size_t, double) {});
+}
+
+/// The same of B; by how much that changes it is unshot.
+void NodeRadiosity::pull_changes(std::uint32_t r) {
+  pull(r, B_, bands_, [&](std::size_t i, double change) { unshot_[i] += change; });
+}
+
+template <class Changed>
+void NodeRadiosity::pull(std::uint32_t r, std::vector<double>& values, std::size_t bands, const Changed& changed) {
   const Root& root = tree_->root(r);
   for (std::size_t n = std::size_t{root.node_first} + root.node_count; n-- > root.node_first;) {
     const Node& node = tree_->nodes()[n];
     if (!node.has_children()) continue;
+    const double Node::*const weight = node.open_area > 0 ? &Node::open_area : &Node::area;
     double area = 0;
-    for (std::uint32_t k = 0; k < 4; ++k) area += tree_->node(node.first_child + k).area;
+    for (std::uint32_t k = 0; k < 4; ++k) area += tree_->node(node.first_child + k).*weight;
     for (std::size_t b = 0; b < bands; ++b) {
       double sum = 0;
       for (std::size_t k = 0; k < 4; ++k) {
         const std::size_t child = node.first_child + k;
-        sum += tree_->nodes()[child].area * values[child * bands + b];
+        sum += tree_->nodes()[child].*weight * values[child * bands + b];
       }
-      values[n * bands + b] = sum / area;
+      const std::size_t i = n * bands + b;
+      const double mean = sum / area;
+      changed(i, mean - values[i]);
+      values[i] = mean;
     }
   }
 }
@@ -163,7 +205,7 @@ void NodeRadiosity::find_luminance(std::uint32_t r) {
 }
 
 LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& clusters, double tolerance,
-                                   std::uint64_t most) {
+                                   const Abandon& abandon, std::uint64_t most) {
   struct OfRoot {
     std::vector<double> change, size;  ///< largest of each band
     double reflected = 0, w = 0;       ///< largest of what a sweep adds to w, and of w
@@ -210,7 +252,7 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& c
         for (std::size_t b = 0; b < width; ++b) sums[(node.first_child + k - first) * width + b].add(sum[b]);
       }
       if (bounding && !node.has_children()) {
-        next_w_[n] = 1 + largest_rho * sum[bands_].value();
+        next_w_[n] = node.open_area > 0 ? 1 + largest_rho * sum[bands_].value() : 1;
         found.reflected = std::max(found.reflected, next_w_[n] - w_[n]);
         found.w = std::max(found.w, w_[n]);
       }
@@ -218,7 +260,7 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& c
         const std::size_t i = n * bands_ + b;
         H_[i] = sum[b].value();
         if (node.has_children()) continue;
-        next_[i] = E_[std::size_t{r} * bands_ + b] + rho[b] * H_[i];
+        next_[i] = B_of_leaf(static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(b));
         found.change[b] = std::max(found.change[b], std::fabs(next_[i] - B_[i]));
         found.size[b] = std::max(found.size[b], std::fabs(next_[i]));
       }
@@ -231,6 +273,7 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& c
   result.factor = std::numeric_limits<double>::infinity();
   double best = result.factor;
   while (result.iterations < most) {
+    if (abandon && abandon()) throw Abandoned();
     if (!clusters.empty()) {
       clusters.gather(B_, bands_, of_clusters);
       if (bounding) clusters.gather(w_, 1, w_of_clusters);
@@ -268,6 +311,7 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& c
   std::ranges::fill(unshot_, 0);
   std::ranges::fill(received_, 0);
   std::ranges::fill(has_received_, 0);
+  std::ranges::fill(weighs_anew_, 0);
   return result;
 }
 
@@ -280,18 +324,18 @@ void NodeRadiosity::receive(std::uint32_t node, double transfer, std::uint32_t s
   }
 }
 
-std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::uint64_t most) {
+std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, const Abandon& abandon, std::uint64_t most) {
   const std::size_t roots = tree_->roots().size();
   std::vector<double> energy(roots), unshot(roots);
   std::vector<std::uint8_t> shoots(roots);
   const auto measure = [&](std::uint32_t r) {
-    const Node& node = tree_->node(tree_->root(r).node_first);
-    energy[r] = node.area * Y_[tree_->root(r).node_first];
+    const std::uint32_t first = tree_->root(r).node_first;
+    energy[r] = tree_->node(first).open_area * Y_[first];
     double sum = 0;  // of magnitudes: what leaves receive may cancel in the mean
-    for (std::size_t n = tree_->root(r).node_first, last = n + tree_->root(r).node_count; n < last; ++n) {
-      if (tree_->nodes()[n].has_children()) continue;
-      for (std::uint32_t b = 0; b < bands_; ++b)
-        sum += tree_->nodes()[n].area * weights_[b] * std::fabs(unshot_[n * bands_ + b]);
+    for (std::size_t n = first, last = n + tree_->root(r).node_count; n < last; ++n) {
+      const Node& node = tree_->nodes()[n];
+      if (weighs_anew_[r] == 0 && node.has_children()) continue;
+      for (std::uint32_t b = 0; b < bands_; ++b) sum += node.area * weights_[b] * std::fabs(unshot_[n * bands_ + b]);
     }
     unshot[r] = sum;
   };
@@ -307,15 +351,14 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
         H_[i] += dH;
         if (node.has_children()) {
           for (std::size_t k = 0; k < 4; ++k) received_[(node.first_child + k) * bands_ + b] += dH;
-        } else {
+        } else if (node.open_area > 0) {
           const double dB = rho_[std::size_t{r} * bands_ + b] * dH;
           B_[i] += dB;
           unshot_[i] += dB;
         }
       }
     }
-    pull(r, B_, bands_);
-    pull(r, unshot_, bands_);
+    pull_changes(r);
     find_luminance(r);
     measure(r);
   };
@@ -327,6 +370,7 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
   });
   double brightest = 0;  // the most energy that there was: of a light that went out little stays
   for (std::uint64_t round = 0; round < most; ++round) {
+    if (abandon && abandon()) throw Abandoned();
     double all = 0, left = 0, largest = 0;
     for (std::uint32_t r = 0; r < roots; ++r) {
       if (!tree_->root(r).present) continue;
@@ -358,6 +402,7 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, std::ui
         std::fill_n(unshot_.begin() + std::ptrdiff_t{root.node_first} * bands_, std::size_t{root.node_count} * bands_,
                     0.0);
         unshot[r] = 0;
+        weighs_anew_[r] = 0;
       }
       absorb(r);
     });
@@ -393,7 +438,7 @@ void set_energies(std::span<Link> links, const PatchTree& tree, std::span<const 
     Link& link = links[i];
     if (!link.ghost) {
       link.energy = luminance[link.source] *
-                    judged_form_factor(tree.node(link.destination), tree.node(link.source), link.form_factor);
+                    judged_form_factor(tree.node(link.destination), tree.node(link.source), link.possible_transfer());
       continue;
     }
     link.energy = 0;

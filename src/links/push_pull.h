@@ -9,6 +9,7 @@
 
 #include "src/links/cluster_links.h"
 #include "src/links/link_index.h"
+#include "src/links/link_task.h"
 #include "src/links/patch_tree.h"
 #include "src/scene/scene.h"
 
@@ -29,8 +30,12 @@ struct LinkExchange {
   double factor = 0;  ///< of the bound: max w / (1 − d)
 };
 
+/// Asked before each sweep or round: whether to throw Abandoned, in the middle of an exchange.
+using Abandon = std::function<bool()>;
+
 /// B [W/m²] of every node and band at [node * bands + band]; of a leaf E + ρ H with H the sum of what its own links and
-/// those of the nodes above it bring; of others the mean of the leaves, weighted by area. 0 where nothing is there.
+/// those of the nodes above it bring, E where all of it is covered; of others the mean of the leaves, weighted by their
+/// open areas: links bring what is seen, which is never what is covered. 0 where nothing is there.
 class NodeRadiosity {
  public:
   /// The tree must live as long.
@@ -38,6 +43,8 @@ class NodeRadiosity {
 
   std::uint32_t bands() const { return bands_; }
   std::span<const double> B() const { return B_; }
+  /// Mean over all of a node, where what is covered has its E.
+  double whole_B(std::uint32_t node, std::uint32_t band) const;
   /// By node.
   std::span<const double> luminance() const { return Y_; }
   /// By root and band.
@@ -51,6 +58,9 @@ class NodeRadiosity {
   /// its B until it is cleared, so that it can be told what its links brought.
   void change_geometry(const EditedScene& scene, std::uint32_t object);
   void clear_what_is_gone();
+  /// After the edits: what covers nodes is now what the tree says. B follows with H as it is, and what that changes, of
+  /// means, too, remains to be shot.
+  void change_covering();
   /// Reflectances and emissions of an object are now those of the scene. B becomes E' + ρ' H with H as it is; what that
   /// changes remains to be shot.
   void change_materials(const EditedScene& scene, std::uint32_t object);
@@ -59,14 +69,15 @@ class NodeRadiosity {
   /// tolerance, or rounding, or `most` sweeps end it. In parallel; the same bits for any number of threads. What
   /// clusters bring, patches receive evenly.
   LinkExchange gather(const LinkIndex& links, const ClusterLinks& clusters, double tolerance,
-                      std::uint64_t most = kMostExchanges);
+                      const Abandon& abandon = {}, std::uint64_t most = kMostExchanges);
 
   /// [W/m²] what a link that changed brings more than before; to be pushed. Different receiving roots: any threads.
   void receive(std::uint32_t node, double transfer, std::uint32_t source);
   /// Pushes what was received and shoots it on, the patches with the most unshot energy (A |ΔB|, luminance) first: in
   /// rounds of those that have a tenth of the most, until no more than `share` of the energy that all patches had at
   /// most is left or `most` rounds are done. Returns the rounds.
-  std::uint64_t shoot(const LinkIndex& links, double share, std::uint64_t most = kMostExchanges);
+  std::uint64_t shoot(const LinkIndex& links, double share, const Abandon& abandon = {},
+                      std::uint64_t most = kMostExchanges);
 
   /// H [W/m²] of a leaf, each band, as of the last exchange.
   std::span<const double> leaf_H(std::uint32_t node) const { return {H_.data() + std::size_t{node} * bands_, bands_}; }
@@ -75,7 +86,12 @@ class NodeRadiosity {
   void fit_arrays();
   void set_materials(const EditedScene& scene, std::uint32_t object);
   void start(std::uint32_t root);
+  double B_of_leaf(std::uint32_t node, std::uint32_t band) const;
+  void renew(std::uint32_t root);
   void pull(std::uint32_t root, std::vector<double>& values, std::size_t bands);
+  void pull_changes(std::uint32_t root);
+  template <class Changed>
+  void pull(std::uint32_t root, std::vector<double>& values, std::size_t bands, const Changed& changed);
   void find_luminance(std::uint32_t root);
 
   const PatchTree* tree_;
@@ -87,6 +103,7 @@ class NodeRadiosity {
   std::vector<double> w_, next_w_;                  ///< by node, of the error bound
   std::vector<double> received_, unshot_;           ///< by node and band
   std::vector<std::uint8_t> has_received_, there_;  ///< by root
+  std::vector<std::uint8_t> weighs_anew_;           ///< by root: its means have changed by themselves; not yet shot
 };
 
 /// By node: Σ F over its links, those of the nodes above it and those of clusters.

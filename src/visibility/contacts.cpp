@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace exitance {
 namespace {
@@ -123,6 +124,22 @@ bool Contacts::are_sides_of_a_sheet(std::uint32_t p, std::uint32_t q) const {
     }
   }
   return p == q;
+}
+
+std::vector<std::uint32_t> Contacts::covering(std::uint32_t facet) const {
+  const LyingOn& on = lying_on_[facet];
+  std::vector<std::uint32_t> found = on.overlying;
+  found.insert(found.end(), on.burying.begin(), on.burying.end());
+  std::ranges::copy_if(on.touching, std::back_inserter(found),
+                       [&](std::uint32_t t) { return lies_in(t, soup_->facets()[facet].plane); });
+  return found;
+}
+
+bool Contacts::lies_in(std::uint32_t facet, const Plane& plane) const {
+  const double limit = kOfComputed * near_ * norm(plane.normal);
+  return std::ranges::all_of(soup_->corners(soup_->facets()[facet]), [&](const Corner& c) {
+    return std::fabs(dot(plane.normal, c.at - plane.origin)) <= limit;
+  });
 }
 
 /// Whether some of the facet lies in the plane, or nearly.

@@ -35,6 +35,9 @@ class Contacts {
   /// Whether something does with open space before it: a later surface that faces the same way, or a sheet.
   bool overlaid(std::uint32_t facet, const Vec3& point) const;
   bool may_be_overlaid(std::uint32_t facet) const { return !lying_on_[facet].overlying.empty(); }
+  bool may_be_covered(std::uint32_t facet) const { return may_be_overlaid(facet) || burying_count(facet) > 0; }
+  /// The facets that cover some of it by lying in its plane, exactly or nearly, in no particular order.
+  std::vector<std::uint32_t> covering(std::uint32_t facet) const;
 
   /// The contacts of two facets, between points of which nothing else stands.
   class Pair {
@@ -61,6 +64,7 @@ class Contacts {
   bool any_at(std::span<const std::uint32_t> facets, const Vec3& point, double near) const;
   bool are_sides_of_a_sheet(std::uint32_t p, std::uint32_t q) const;  ///< polygons
   bool reaches(std::uint32_t facet, const Plane& plane) const;
+  bool lies_in(std::uint32_t facet, const Plane& plane) const;
 
   /// The facets that lie on one: against it up to rounding; exactly, solids; exactly, others.
   struct LyingOn {

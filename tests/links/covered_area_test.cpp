@@ -1,0 +1,217 @@
+// What lies on a surface covers it: neither counts what is covered, as a part of what sends or of what receives.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/links/linked_rooms.h"
+
+namespace exitance {
+namespace {
+
+/// About a vertical axis.
+std::vector<Surface> turned(std::vector<Surface> surfaces, double degrees, const Vec3& about) {
+  const double c = std::cos(degrees * std::numbers::pi / 180), s = std::sin(degrees * std::numbers::pi / 180);
+  for (Surface& surface : surfaces) {
+    for (Vec3& v : surface.polygon.outer) {
+      const Vec3 w = v - about;
+      v = about + Vec3{c * w.x - s * w.y, s * w.x + c * w.y, w.z};
+    }
+  }
+  return surfaces;
+}
+
+Surface square(double low, double high, double z, bool up, std::uint32_t material = 2) {
+  Surface s;
+  s.polygon.outer = {{low, low, z}, {high, low, z}, {high, high, z}, {low, high, z}};
+  if (!up) std::reverse(s.polygon.outer.begin(), s.polygon.outer.end());
+  s.material = material;
+  return s;
+}
+
+/// Area of an object's surface (all of them: kNone) that is open.
+double open_area_of(const LinkedRadiosity& links, std::uint32_t object, std::uint32_t surface = kNone) {
+  double sum = 0;
+  for (const Root& root : links.tree().roots()) {
+    if (root.present && root.object == object && (surface == kNone || root.surface == surface))
+      sum += links.tree().node(root.node_first).open_area;
+  }
+  return sum;
+}
+
+constexpr std::uint32_t kFloor = 0, kBottom = 0, kTop = 1;  // of box_faces
+
+/// Named rooms in which the last object lies on something.
+struct Case {
+  std::string name;
+  Scene scene;
+  double floor = 9;           ///< [m²] of it that is open
+  double last = 0;            ///< of the last object
+  Vec3 away{0.3, 0.25, 0.4};  ///< a move after which nothing of it is covered
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  const auto box = [](double side, double z) {
+    return box_faces({1.1, 1.2, z}, {1.1 + side, 1.2 + side, z + 0.5}, 2, 0);
+  };
+  const auto room_with = [](const std::vector<std::vector<Surface>>& things) {
+    Scene scene = empty_room();
+    for (const auto& thing : things) add(scene, "thing", thing);
+    return scene;
+  };
+  all.push_back({"box on the floor", room_with({box(0.7, 0)}), 9 - 0.49, 0.49 + 1.4});
+  all.push_back({"turned box", room_with({turned(box(0.7, 0), 27, {1.5, 1.5, 0})}), 9 - 0.49, 0.49 + 1.4});
+  all.push_back({"ends on a node's edge", room_with({box_faces({0.75, 0.75, 0}, {1.5, 1.5, 0.5}, 2, 0)}), 9 - 0.5625,
+                 0.5625 + 1.5});
+  all.push_back({"smaller box on a larger one",
+                 room_with({box(0.8, 0), turned(box_faces({1.3, 1.4, 0.5}, {1.7, 1.8, 1}, 2, 0), 20, {1.5, 1.6, 0})}),
+                 9 - 0.64, 0.16 + 0.8});
+  all.push_back(
+      {"larger box on a smaller one", room_with({box(0.4, 0), box(0.8, 0.5)}), 9 - 0.16, 2 * 0.64 - 0.16 + 1.6});
+  all.push_back({"box at the wall", room_with({box_faces({0, 1, 1}, {0.5, 1.5, 1.5}, 2, 0)}), 9, 1.25});
+  all.push_back({"box through the wall", room_with({box_faces({-0.2, 1, 1}, {0.5, 1.5, 1.5}, 2, 0)}), 9, 0.5 + 1.4});
+  all.push_back({"sheet that looks up", room_with({{square(1, 1.8, 0, true)}}), 9 - 0.64, 0.64});
+  all.push_back({"sheet that looks down", room_with({{square(1, 1.8, 0, false)}}), 9, 0});
+  all.push_back({"two sheets that overlap", room_with({{square(1, 1.8, 0, true)}, {square(1.4, 2.2, 0, true)}}),
+                 9 - 1.28 + 0.16, 0.64});
+  return all;
+}
+
+TEST(CoveredArea, IsExactWhereThingsLieOnOthers) {
+  for (Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const auto last = static_cast<std::uint32_t>(c.scene.objects.size() - 1);
+    LinkedRadiosity links(c.scene, coarse());
+    EXPECT_NEAR(open_area_of(links, 0, kFloor), c.floor, 1e-12);
+    EXPECT_NEAR(open_area_of(links, last), c.last, 1e-12);
+    for (const Node& node : links.tree().nodes()) {
+      EXPECT_EQ(node.covered, node.open_area < node.area);
+      std::vector<NodePoint> points;
+      const auto n = static_cast<std::uint32_t>(&node - links.tree().nodes().data());
+      links.tree().open_points(n, 2, points);
+      EXPECT_EQ(points.empty(), node.open_area < 1e-3 * node.area);
+      double sum = 0;
+      for (const NodePoint& p : points) sum += p.weight;
+      EXPECT_NEAR(sum, points.empty() ? 0 : 1, 1e-12);
+    }
+  }
+  Case stack = cases()[3];
+  LinkedRadiosity links(stack.scene, coarse());
+  EXPECT_NEAR(open_area_of(links, 1, kTop), 0.64 - 0.16, 1e-12);
+  EXPECT_EQ(open_area_of(links, 1, kBottom), 0);
+  EXPECT_EQ(open_area_of(links, 2, kBottom), 0);
+}
+
+// Contact is only up to rounding then, and no quadrilateral is planar.
+TEST(CoveredArea, IsFoundInARoomThatIsTurned) {
+  Scene scene = empty_room();
+  add(scene, "box", box_faces({1.1, 1.2, 0}, {1.8, 1.9, 0.5}, 2, 0));
+  for (Surface& surface : scene.surfaces) {
+    for (Vec3& v : surface.polygon.outer) {
+      const Vec3 w{0.8 * v.x - 0.6 * v.z, v.y, 0.6 * v.x + 0.8 * v.z};
+      v = Vec3{w.x, w.y * std::cos(0.7) - w.z * std::sin(0.7), w.y * std::sin(0.7) + w.z * std::cos(0.7)};
+    }
+  }
+  LinkedRadiosity links(scene, coarse());
+  EXPECT_NEAR(open_area_of(links, 0, kFloor), 9 - 0.49, 1e-9);
+  EXPECT_NEAR(open_area_of(links, 1, kBottom), 0, 1e-9);
+}
+
+// All links join the smallest sub-patches, so that from each of their points all that is seen sums to 1: B = E / (1 −
+// ρ) wherever anything is open, and E where nothing is.
+TEST(CoveredArea, IsLeftOutInAFurnace) {
+  for (Case& c : cases()) {
+    if (c.name == "box through the wall") continue;  // the inside of the box is no part of the room, nor is it covered
+    SCOPED_TRACE(c.name);
+    for (Surface& s : c.scene.surfaces) s.material = 1;
+    LinkOptions options;
+    options.eps2 = options.eps1 = 0;
+    options.smallest_area = 0.3;
+    options.tolerance = 1e-11;
+    LinkedRadiosity links(c.scene, options);
+    links.build();
+    for (const std::uint32_t n : links.elements()) {
+      const Node& node = links.tree().node(n);
+      EXPECT_NEAR(links.radiosity().B()[n], node.open_area > 0 ? 2 : 1, 1e-9);
+      EXPECT_NEAR(links.radiosity().whole_B(n, 0), 1 + node.open_area / node.area, 1e-9);
+    }
+    for (const Root& root : links.tree().roots()) {
+      const double B = links.radiosity().B()[root.node_first];
+      EXPECT_NEAR(B, links.tree().node(root.node_first).open_area > 0 ? 2 : 1, 1e-9);
+    }
+  }
+}
+
+TEST(CoveredArea, FollowsEdits) {
+  for (Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const auto last = static_cast<std::uint32_t>(c.scene.objects.size() - 1);
+    LinkOptions options = coarse();
+    options.eps2 = 0.02;
+    options.eps1 = 0.012;
+    options.smallest_area = 0.04;
+    LinkedRadiosity direct(c.scene, options), hvt(c.scene, options), shot(c.scene, options), stays(c.scene, options);
+    for (LinkedRadiosity* links : {&direct, &hvt, &shot, &stays}) links->build();
+    for (const Vec3& to : {c.away, Vec3{0.05, -0.1, 0}, Vec3{}}) {
+      const std::vector<Edit> edits{move_to(last, to)};
+      direct.update(edits, LinkMethod::direct);
+      hvt.update(edits, LinkMethod::hvt);
+      shot.update(edits, LinkMethod::hvt_peu);
+      ASSERT_TRUE(same_bits(direct.links(), hvt.links()));
+      ASSERT_TRUE(same_bits(direct.radiosity().B(), hvt.radiosity().B()));
+      EXPECT_LT(error_of(shot), 1e-3);
+      for (std::size_t n = 0; n < direct.tree().nodes().size(); ++n)
+        ASSERT_EQ(direct.tree().nodes()[n].open_area, shot.tree().nodes()[n].open_area);
+    }
+    for (std::size_t n = 0; n < direct.tree().nodes().size(); ++n)
+      EXPECT_EQ(direct.tree().nodes()[n].open_area, stays.tree().nodes()[n].open_area);
+    const std::vector<Edit> nothing{move_to(last, {})};
+    direct.update(nothing, LinkMethod::rebuild);
+    EXPECT_TRUE(same_bits(direct.links(), stays.links()));
+    EXPECT_TRUE(same_bits(direct.radiosity().B(), stays.radiosity().B()));
+  }
+}
+
+// The lid that lies on the floor covers it also as seen from the sides of its solid, which do not move.
+TEST(CoveredArea, OfALidThatLeavesItsSolid) {
+  Scene scene = empty_room();
+  const std::vector<Surface> faces = box_faces({1.1, 1.2, 0}, {1.8, 1.9, 0.5}, 2, 0);
+  add(scene, "sides", {faces.begin() + 1, faces.end()});
+  add(scene, "lid", {faces.begin(), faces.begin() + 1});
+  LinkedRadiosity direct(scene, coarse()), hvt(scene, coarse());
+  for (LinkedRadiosity* links : {&direct, &hvt}) links->build();
+  EXPECT_NEAR(open_area_of(direct, 0, kFloor), 9 - 0.49, 1e-12);
+  for (const Operation operation : {Operation::remove, Operation::add}) {
+    const std::vector<Edit> edits{{operation, 2, {}, {}, {}}};
+    direct.update(edits, LinkMethod::direct);
+    hvt.update(edits, LinkMethod::hvt);
+    EXPECT_NEAR(open_area_of(hvt, 0, kFloor), operation == Operation::add ? 9 - 0.49 : 9, 1e-12);
+    EXPECT_TRUE(same_bits(direct.links(), hvt.links())) << name_of(operation);
+    EXPECT_TRUE(same_bits(direct.radiosity().B(), hvt.radiosity().B())) << name_of(operation);
+  }
+}
+
+// Without a threshold all differences are shot, those of means that only weigh their parts anew, too.
+TEST(CoveredArea, IsFollowedByProgressiveEnergyUpdate) {
+  for (Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const auto last = static_cast<std::uint32_t>(c.scene.objects.size() - 1);
+    LinkOptions options = coarse();
+    options.B_eps = 0;
+    options.smallest_area = 0.04;
+    LinkedRadiosity links(c.scene, options);
+    links.build();
+    for (const Vec3& to : {c.away, Vec3{0.05, -0.1, 0}, Vec3{}}) {
+      links.update(std::vector<Edit>{move_to(last, to)}, LinkMethod::hvt_peu);
+      EXPECT_LT(error_of(links), 1e-7);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace exitance
