@@ -1,5 +1,7 @@
 #include "tests/fuzz/memory_request.h"
 
+#include <malloc.h>
+
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -29,6 +31,10 @@ std::size_t largest_memory_request() {
 }
 void forget_memory_requests() {
   largest = 0;
+}
+std::size_t memory_held() {
+  const auto held = mallinfo2();
+  return held.uordblks + held.hblkhd;
 }
 
 }  // namespace exitance
