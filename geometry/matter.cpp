@@ -17,7 +17,7 @@ bool less(const Loop& a, const Loop& b) {
 }
 
 Loop from_least(Loop loop) {
-  std::ranges::rotate(loop, std::ranges::min_element(loop, lexicographically_less));
+  std::rotate(loop.begin(), std::ranges::min_element(loop, lexicographically_less), loop.end());
   return loop;
 }
 

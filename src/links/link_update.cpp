@@ -66,7 +66,7 @@ class Update {
     if (task_.order == LinkOrder::importance) {
       std::ranges::stable_sort(all, std::ranges::greater(), &PendingPair::stake);
     } else {
-      std::ranges::stable_partition(all, goes);
+      std::stable_partition(all.begin(), all.end(), goes);
     }
     return all;
   }
@@ -155,8 +155,8 @@ class Update {
 
   std::span<const PatchPair> new_pairs_of(std::uint32_t r) const {
     if (task_.new_pairs == nullptr) return {};
-    const auto found = std::ranges::equal_range(*task_.new_pairs, r, {}, &PatchPair::receiver);
-    return {found.begin(), found.end()};
+    return {std::ranges::lower_bound(*task_.new_pairs, r, {}, &PatchPair::receiver),
+            std::ranges::upper_bound(*task_.new_pairs, r, {}, &PatchPair::receiver)};
   }
 
   void work(std::uint32_t r, std::span<const std::uint32_t> sources, PairUpdate& worker) {

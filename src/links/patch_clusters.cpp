@@ -41,19 +41,22 @@ void PatchClusters::add(std::uint32_t parent, std::uint32_t first, std::uint32_t
 void PatchClusters::divide(std::uint32_t c, std::span<const Box> boxes) {
   const Cluster cluster = clusters_[c];
   const auto roots = std::span(roots_).subspan(cluster.first, cluster.count);
-  auto second = std::ranges::stable_partition(
-      roots, [&](std::uint32_t r) { return norm(boxes[r].upper - boxes[r].lower) > cluster.radius; });
-  if (second.size() == roots.size() || second.empty()) {
+  auto second = std::stable_partition(roots.begin(), roots.end(), [&](std::uint32_t r) {
+    return norm(boxes[r].upper - boxes[r].lower) > cluster.radius;
+  });
+  if (second == roots.begin() || second == roots.end()) {
     Box middles;
     for (const std::uint32_t r : roots) middles.extend(places_[r].middle);
     const Vec3 extent = middles.upper - middles.lower;
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
     const double at = middles.lower[axis] + extent[axis] / 2;
-    second = std::ranges::stable_partition(roots, [&](std::uint32_t r) { return places_[r].middle[axis] < at; });
+    second = std::stable_partition(roots.begin(), roots.end(),
+                                   [&](std::uint32_t r) { return places_[r].middle[axis] < at; });
   }
-  std::size_t count = roots.size() - second.size();
-  if (count == 0 || second.empty()) count = roots.size() / 2;
-  const auto of_first = static_cast<std::uint32_t>(count);
+  if (second == roots.begin() || second == roots.end()) {
+    second = roots.begin() + static_cast<std::ptrdiff_t>(roots.size() / 2);
+  }
+  const auto of_first = static_cast<std::uint32_t>(second - roots.begin());
   clusters_[c].first_child = static_cast<std::uint32_t>(clusters_.size());
   add(c, cluster.first, of_first, boxes);
   add(c, cluster.first + of_first, cluster.count - of_first, boxes);

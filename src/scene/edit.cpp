@@ -44,9 +44,9 @@ EditedScene::EditedScene(Scene scene)
 }
 
 EditedScene::Range EditedScene::surfaces_of(std::uint32_t object) const {
-  const auto found = std::ranges::equal_range(scene_.surfaces, object, {}, &Surface::object);
-  return {static_cast<std::uint32_t>(found.begin() - scene_.surfaces.begin()),
-          static_cast<std::uint32_t>(found.end() - scene_.surfaces.begin())};
+  const auto& all = scene_.surfaces;
+  return {static_cast<std::uint32_t>(std::ranges::lower_bound(all, object, {}, &Surface::object) - all.begin()),
+          static_cast<std::uint32_t>(std::ranges::upper_bound(all, object, {}, &Surface::object) - all.begin())};
 }
 
 void EditedScene::take_out(std::uint32_t object) {

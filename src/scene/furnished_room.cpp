@@ -249,9 +249,10 @@ class Furnisher {
 
   /// A box hanging free, tilted, its faces planar up to rounding only.
   void add_spotlight(const Frame& f) {
-    const auto [c, s] = direction(random_.uniform(0.05, 0.2));
+    const auto tilt = direction(random_.uniform(0.05, 0.2));
     const Frame about = turned(f);
     add_object("spotlight", [&] {
+      const auto [c, s] = tilt;
       std::vector<Vec3> base, top;
       for (const auto& [u, v] : {std::array{-0.1, -0.06}, {0.1, -0.06}, {0.1, 0.06}, {-0.1, 0.06}}) {
         base.push_back(about.at(c * u + s * 0.12, v, 2.6 + s * u - c * 0.12));

@@ -94,7 +94,7 @@ auto order(const Vec3& p) {
 // The loop from its smallest vertex on, so that equal loops compare equal whichever vertex comes first.
 std::vector<Vec3> canonical(std::vector<Vec3> loop) {
   const auto smallest = std::ranges::min_element(loop, {}, order);
-  std::ranges::rotate(loop, smallest);
+  std::rotate(loop.begin(), smallest, loop.end());
   return loop;
 }
 

@@ -223,7 +223,8 @@ Forms renumbered(const Question& question, Random& random) {
   const auto rotate = [&](Polygon& polygon) {
     if (!is_cut_alike(polygon)) return;
     change_loops(polygon, [&](Loop& loop) {
-      std::ranges::rotate(loop, loop.begin() + static_cast<std::ptrdiff_t>(pick(loop.size(), random)));
+      const auto first = static_cast<std::ptrdiff_t>(pick(loop.size(), random));
+      std::rotate(loop.begin(), loop.begin() + first, loop.end());
     });
   };
   rotate(form.source);

@@ -1,11 +1,14 @@
-// libFuzzer's entry to one reader, EXITANCE_READER.
+// libFuzzer's entry to the reader that the environment names in EXITANCE_READER.
 
 #include <stdlib.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <string>
 
 #include "tests/fuzz/reader_under_test.h"
 
@@ -26,12 +29,23 @@ std::string scratch_folder() {
   return folder;
 }
 
+const exitance::ReaderUnderTest& reader() {
+  const char* const given = std::getenv("EXITANCE_READER");
+  const std::string name = given != nullptr ? given : "";
+  const auto readers = exitance::readers_under_test();
+  const auto found = std::ranges::find(readers, name, &exitance::ReaderUnderTest::name);
+  if (found != readers.end()) return *found;
+  std::fprintf(stderr, "EXITANCE_READER is \"%s\"; give one of", name.c_str());
+  for (const auto& one : readers) std::fprintf(stderr, " %s", one.name.c_str());
+  std::fprintf(stderr, "\n");
+  std::exit(2);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::string folder = scratch_folder();
-  static const auto readers = exitance::readers_under_test();
-  static const auto reader = std::ranges::find(readers, EXITANCE_READER, &exitance::ReaderUnderTest::name);
-  exitance::read_bytes(*reader, folder, {reinterpret_cast<const char*>(data), size});
+  static const exitance::ReaderUnderTest& chosen = reader();
+  exitance::read_bytes(chosen, folder, {reinterpret_cast<const char*>(data), size});
   return 0;
 }
