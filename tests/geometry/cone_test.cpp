@@ -173,5 +173,86 @@ TYPED_TEST(ConeOf, APointThatDropsIsNoEndOfAnEdgeThatDoesNot) {
   EXPECT_FALSE(is_end_of({ViewPoint::Kind::at_horizon, false, 1, &p, &v}, cone.sides[0]));
 }
 
+Signed<double> signed_value(double value, double error = 0) {
+  return {value, error, value > 0 ? 1 : value < 0 ? -1 : 0};
+}
+
+/// What is left of a stretch where the function from a to b is positive, when nothing has to be known better.
+Stretch<double> narrowed(Signed<double> a, Signed<double> b, Stretch<double> stretch = {}) {
+  narrow(stretch, a, b, 0.0, [](auto&, auto&, double) { FAIL() << "it is known well enough"; });
+  return stretch;
+}
+
+TEST(Narrow, LeavesWhatIsPositive) {
+  for (const double a : {-1.0, 0.0, 3.0}) {
+    for (const double b : {-1.0, 0.0, 1.0}) {
+      const Stretch<double> s = narrowed(signed_value(a), signed_value(b));
+      EXPECT_EQ(s.empty, a <= 0 && b <= 0) << a << " " << b;
+      EXPECT_EQ(s.narrow, a * b < 0) << a << " " << b;
+      EXPECT_NEAR(s.lo, a < 0 && b > 0 ? 0.5 : 0, s.lo_error) << a << " " << b;
+      EXPECT_NEAR(s.hi, a > 0 && b < 0 ? 0.75 : 1, s.hi_error) << a << " " << b;
+      EXPECT_LE(std::max(s.lo_error, s.hi_error), 1e-15);
+    }
+  }
+}
+
+TEST(Narrow, KnowsTheCrossingAsWellAsItsEnds) {
+  Random random("narrow");
+  for (int k = 0; k < 1000; ++k) {
+    const double a = random.real(0.1, 1), b = -random.real(0.1, 1), error = random.real(0, 1e-3);
+    const Stretch<double> falling = narrowed(signed_value(a, error), signed_value(b, error)),
+                          rising = narrowed(signed_value(b, error), signed_value(a, error));
+    for (const double off_a : {-error, error}) {
+      for (const double off_b : {-error, error}) {
+        const double t = (a + off_a) / (a + off_a - b - off_b);
+        EXPECT_LE(std::fabs(falling.hi - t), falling.hi_error);
+        EXPECT_LE(std::fabs(rising.lo - (1 - t)), rising.lo_error);
+      }
+    }
+    EXPECT_LE(falling.hi_error, 1.1 * error / (a - b) + 1e-15) << "and no worse";
+  }
+  EXPECT_GE(narrowed(signed_value(1e-3, 1e-3), signed_value(-1e-3, 1e-3)).hi_error, 1) << "all is open";
+}
+
+TEST(Narrow, KeepsTheTighterEndAndTheLargerErrorOfWhatMayBeTheEnd) {
+  const Stretch<double> half{0.25, 0.5, 1e-4, 1e-4, false, false};
+  const auto at = [&](double t, double error, bool falls) {
+    const Signed<double> a = signed_value(falls ? t : -t, error), b = signed_value(falls ? t - 1 : 1 - t, error);
+    return narrowed(a, b, half);
+  };
+  EXPECT_FALSE(at(0.75, 1e-9, true).narrow);
+  EXPECT_EQ(at(0.75, 1e-9, true).hi, 0.5);
+  EXPECT_EQ(at(0.75, 1e-9, true).hi_error, 1e-4);
+  EXPECT_FALSE(at(0.125, 1e-9, false).narrow);
+  EXPECT_EQ(at(0.125, 1e-9, false).lo, 0.25);
+  EXPECT_NEAR(at(0.375, 1e-9, true).hi, 0.375, 1e-8);
+  EXPECT_EQ(at(0.375, 1e-9, true).hi_error, 1e-4);
+  EXPECT_NEAR(at(0.375, 1e-9, false).lo, 0.375, 1e-8);
+  EXPECT_EQ(at(0.375, 1e-9, false).lo_error, 1e-4);
+  // It may be either: both ends' errors count.
+  EXPECT_TRUE(at(0.501, 1e-3, true).narrow);
+  EXPECT_EQ(at(0.501, 1e-3, true).hi, 0.5);
+  EXPECT_GT(at(0.501, 1e-3, true).hi_error, 9e-4);
+  EXPECT_TRUE(at(0.249, 1e-3, false).narrow);
+  EXPECT_EQ(at(0.249, 1e-3, false).lo, 0.25);
+  EXPECT_GT(at(0.249, 1e-3, false).lo_error, 9e-4);
+}
+
+TEST(Narrow, AsksForWhatItNeedsAndNoMore) {
+  const auto asked = [](double weight, double after_first) {
+    std::vector<double> accuracies;
+    Stretch<double> stretch;
+    narrow(stretch, signed_value(1, 1e-3), signed_value(-1, 1e-3), weight,
+           [&](Signed<double>& a, Signed<double>& b, double accuracy) {
+             accuracies.push_back(accuracy);
+             a.error = b.error = after_first;
+           });
+    return accuracies;
+  };
+  EXPECT_TRUE(asked(1, 0).empty());
+  EXPECT_EQ(asked(1e4, 1e-9), std::vector<double>{0.5});
+  EXPECT_EQ(asked(1e4, 1e-3), (std::vector<double>{0.5, 0x1p-44}));
+}
+
 }  // namespace
 }  // namespace exitance
