@@ -26,7 +26,7 @@
 #include "src/output/vtk.h"
 #include "src/reference/comparison.h"
 #include "src/reference/matrix_solution.h"
-#include "src/reference/pair_run.h"
+#include "src/form_factor/pair_run.h"
 #include "src/scene/input_error.h"
 #include "src/scene/scene_hash.h"
 #include "src/solve/radiosity_system.h"

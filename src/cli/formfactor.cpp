@@ -26,7 +26,7 @@
 #include "src/output/process_memory.h"
 #include "src/reference/matrix_file.h"
 #include "src/reference/matrix_triplets.h"
-#include "src/reference/pair_run.h"
+#include "src/form_factor/pair_run.h"
 #include "src/scene/front_view.h"
 #include "src/scene/input_error.h"
 #include "src/scene/scene_check.h"

@@ -5,7 +5,7 @@
 #include <bit>
 #include <utility>
 
-#include "src/reference/archive.h"
+#include "src/output/archive.h"
 #include "src/scene/scene_hash.h"
 
 namespace exitance {

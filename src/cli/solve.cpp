@@ -4,11 +4,14 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "src/cli/console.h"
 #include "src/cli/given_options.h"
@@ -21,9 +24,11 @@
 #include "src/cli/scene_options.h"
 #include "src/cli/verbs.h"
 #include "src/links/hierarchical_solution.h"
+#include "src/output/manifest.h"
 #include "src/output/process_memory.h"
 #include "src/output/report.h"
 #include "src/output/result_folder.h"
+#include "src/scene/scene_hash.h"
 #include "src/solve/scene_solution.h"
 #include "src/solve/solution_files.h"
 
@@ -33,8 +38,15 @@ namespace {
 /// A closed scene whose closure defect is above this is a failed check.
 constexpr double kLargestClosureDefect = 1e-9;
 
+/// In the folder of the results, while there is more to do.
+constexpr const char* kUnfinished = "unfinished.parts";
+
 /// Along the edge of a patch: what would make 2^32 points of a single one.
 constexpr std::uint64_t kMostElements = 65'535;
+
+/// Options that change nothing of the work, or the path of a scene, whose contents count.
+constexpr std::array<std::string_view, 7> kOfNoConsequence = {"SCENE",      "json",       "memory-limit", "output",
+                                                              "save-every", "time-limit", "threads"};
 
 using Clock = std::chrono::steady_clock;
 
@@ -130,6 +142,10 @@ class Solve {
         ->check(whole_number_between(0));
     verb.add_option("--time-limit", time_limit_, "Seconds after which to end likewise")->check(positive_number());
     memory_limit_.add_to(verb);
+    verb.add_option("--save-every", options_.save_every,
+                    "Seconds after which finished form factors, or what has been shot, are saved in the folder")
+        ->check(number_between(0))
+        ->capture_default_str();
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
         ->check(whole_number_between(1, kMostThreads));
     verb.add_option("--seed", options_.seed, "Of rays, and of the pairs whose reciprocity is measured")
@@ -141,8 +157,10 @@ class Solve {
         "Exit code 1: the solver did not reach the tolerance, or front and back of a closed scene miss 1 by more than "
         "{} at\n"
         "some sample point (of rays that is reported, no failure). The results are saved all the same. Ctrl-C saves "
-        "what has been shot so far, exit code 4.",
-        kLargestClosureDefect));
+        "what has been shot so far, exit code 4.\n"
+        "With -o what is finished is kept in the folder, in {}: the same command goes on after Ctrl-C or a crash,\n"
+        "another one begins anew. Links and rows of areas by rays are not kept.",
+        kLargestClosureDefect, kUnfinished));
   }
 
   void run() {
@@ -185,6 +203,7 @@ class Solve {
     if (folder) {
       write_report(folder->draft() / "result.json", report);
       folder->publish();
+      if (solution.checkpoint && !solution.may_go_on) solution.checkpoint->remove();
     }
     print_results(json_ ? to_json(report) : printable(summary(report)));
     end(report, solution);
@@ -244,9 +263,25 @@ class Solve {
     options_.memory_limit = memory_limit_.bytes();
     options_.stop = [this, start] { return interrupted() || (time_limit_ && seconds_since(start) > *time_limit_); };
     options_.stop_is_a_limit = time_limit_.has_value();
+    if (!folder_.empty()) {
+      options_.checkpoint = std::filesystem::path(folder_) / kUnfinished;
+      options_.key = key_of(scene);
+    }
     ProgressDisplay display;
     options_.progress = [&](double fraction, std::string_view label) { display.show(fraction, label); };
     return solve_scene(scene, options_);
+  }
+
+  std::string key_of(const Scene& scene) const {
+    const Manifest build = build_manifest();
+    std::string key = fmt::format("version {}\ncommit {}\ncompiler {}\nscene {}\nmesh {} {} {}\n", build.version,
+                                  build.commit, build.compiler, scene_hash(scene), options_.mesh.patch_size,
+                                  options_.mesh.elements_per_edge, options_.mesh.small_patch);
+    for (const auto& [name, value] : given_options(verb_)) {
+      if (std::ranges::find(kOfNoConsequence, name) == kOfNoConsequence.end())
+        key += fmt::format("{} {}\n", name, value);
+    }
+    return key;
   }
 
   void end(const Report& report, const SceneSolution& solution) const {
@@ -257,7 +292,10 @@ class Solve {
     if (solution.stopped) {
       with(limit_reached,
            fmt::format("stopped after {} {}; {}", report.iterations, method_ == "shoot" ? "shots" : "iterations",
-                       folder_.empty() ? "the result is partial" : "the partial result was saved"));
+                       folder_.empty() ? "the result is partial"
+                       : solution.may_go_on && solution.checkpoint
+                           ? "the partial result was saved, and the same command goes on"
+                           : "the partial result was saved"));
     }
     if (!report.converged) {
       with(check_failed, fmt::format("the solver reached an error bound of {:.3g}, not the tolerance of {:.3g}",

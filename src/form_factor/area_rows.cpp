@@ -37,24 +37,15 @@ bool may_be_covered(const PolygonSoup& soup, std::span<const PatchPiece> pieces)
   });
 }
 
-AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOptions& options, std::uint64_t seed,
-                   const Progress& progress) {
+AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairRunOptions& options, std::uint64_t seed,
+                   Checkpoint* checkpoint) {
   const ExchangeScene scene(soup, mesh, ExchangeScene::Unit::element);
   const auto n = static_cast<std::uint32_t>(scene.size());
+  const PairRun run = run_pairs(scene, options, checkpoint);
+  if (!run.complete) return {};
   AreaRows result;
-  PairRows all;
-  constexpr std::uint32_t kBlock = 32;  // rows between two reports of progress
-  std::vector<std::uint32_t> rows;
-  for (std::uint32_t first = 0; first < n; first += kBlock) {
-    rows.resize(std::min(kBlock, n - first));
-    std::iota(rows.begin(), rows.end(), first);
-    const PairRows finished = pair_rows(scene, rows, options, result.statistics);
-    if (finished.row.size() < rows.size()) return {};
-    append(all, finished);
-    const double left = 1 - static_cast<double>(first + rows.size()) / n;
-    if (progress) progress(1 - left * left, "form factors");
-  }
-  const FormFactorMatrix elements = matrix_of(std::span(&all, 1), n);
+  result.pairs = pairs_by_class(run.rows, n);
+  const FormFactorMatrix elements = matrix_of(run.rows, n);
   const std::vector<double> sums = row_sums(elements);
   for (std::uint32_t e = 0; e < n; ++e) {
     const auto errors = elements.row_error(e);
@@ -66,7 +57,7 @@ AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOpt
     }
   }
   constexpr std::size_t kPairs = 64;
-  const PairSample sample = sample_pairs(scene, std::span(&all, 1), options, kPairs, seed);
+  const PairSample sample = sample_pairs(scene, run.rows, options.pairs, kPairs, seed);
   if (!sample.complete) return {};
   for (const PairDefect& pair : sample.reciprocity) {
     result.reciprocity_max_defect = std::max(result.reciprocity_max_defect.value_or(0), pair.amount);

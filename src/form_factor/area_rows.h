@@ -1,20 +1,20 @@
 #pragma once
 // Rows of form factors averaged over elements, by integration to a tolerance.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 
 #include "src/form_factor/form_factor_matrix.h"
-#include "src/form_factor/pair_rows.h"
-#include "src/output/progress.h"
+#include "src/form_factor/pair_run.h"
 #include "src/scene/patch_mesh.h"
 
 namespace exitance {
 
 struct AreaRows {
-  FormFactorMatrix F;  ///< elements × patches
-  PairStatistics statistics;
+  FormFactorMatrix F;                    ///< elements × patches
+  std::array<std::uint64_t, 4> pairs{};  ///< of elements, by class (pairs_by_class)
   /// Elements that something in their own plane covers, wholly or in part, or might: they need not see 1 in all.
   std::uint64_t covered_elements = 0;
   /// Largest |Σ_q F_eq − 1| of the other elements: the defect of a closed scene, without meaning in an open one.
@@ -26,10 +26,11 @@ struct AreaRows {
 };
 
 /// Every pair of elements is integrated once; what an element sees of a patch is the sum of the patch's elements. In
-/// parallel; any number of threads gives the same bits. The mesh must be of the soup's scene. seed: of the
-/// pairs whose reciprocity is measured. Where options.stop ends the work, F is empty.
-AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairOptions& options, std::uint64_t seed,
-                   const Progress& progress = {});
+/// parallel; any number of threads gives the same bits, however often the run was ended (run_pairs, whose checkpoint
+/// may be null). The mesh must be of the soup's scene. seed: of the pairs whose reciprocity is measured. Where
+/// options.pairs.stop ends the work, F is empty.
+AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairRunOptions& options, std::uint64_t seed,
+                   Checkpoint* checkpoint = nullptr);
 
 /// Columns of elements summed to columns of patches, with the errors and the rounding.
 FormFactorMatrix sum_to_patches(const FormFactorMatrix& elements, const PatchMesh& mesh);

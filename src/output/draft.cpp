@@ -7,14 +7,18 @@
 #include <cstring>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 
+#include "src/output/leftovers.h"
 #include "src/scene/input_error.h"
 
 namespace exitance {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view kSuffix = ".part";
 
 // What a link leads to; nothing where that is an open file, of which /proc has only the number.
 std::optional<fs::path> end_of_links(fs::path path) {
@@ -56,8 +60,9 @@ Draft::Draft(const fs::path& path) : path_(path), beside_(path) {
   if (fs::is_directory(path_, failed)) refuse("it is a folder");
   if (failed.value() == ELOOP) refuse(failed.message());
   beside_ += '.';
+  remove_leftovers(folder(), beside_.filename().native(), kSuffix);
   beside_ += std::to_string(getpid());
-  beside_ += ".part";
+  beside_ += kSuffix;
 }
 
 Draft::~Draft() {
@@ -72,8 +77,11 @@ void Draft::publish() const {
   std::error_code failed;
   fs::rename(beside_, path_, failed);
   if (failed) refuse(failed.message());
-  const fs::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
-  if (const int error = to_disk(folder)) refuse(std::strerror(error));
+  if (const int error = to_disk(folder())) refuse(std::strerror(error));
+}
+
+fs::path Draft::folder() const {
+  return path_.has_parent_path() ? path_.parent_path() : ".";
 }
 
 void Draft::refuse(const std::string& why) const {

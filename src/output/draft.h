@@ -8,7 +8,8 @@ namespace exitance {
 
 /// The path beside `path` under which it is written. Removed at the end unless published. A link is followed: what it
 /// leads to is replaced, though it may not be there yet, and the link stays. What cannot be replaced (a FIFO, a device,
-/// a socket, an open file under /proc such as /dev/stdout) is written to directly.
+/// a socket, an open file under /proc such as /dev/stdout) is written to directly. Drafts of the same file that killed
+/// processes have left are removed.
 class Draft {
  public:
   /// Throws InputError when a folder stands there.
@@ -29,6 +30,8 @@ class Draft {
   [[noreturn]] void refuse(const std::string& why) const;
 
  private:
+  std::filesystem::path folder() const;
+
   std::filesystem::path path_, beside_;
   bool is_direct_ = false;
 };

@@ -7,13 +7,20 @@
 #include <utility>
 #include <vector>
 
+#include "src/output/leftovers.h"
 #include "src/scene/input_error.h"
 
 namespace exitance {
 namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kDraft = ".draft.";
+
+}  // namespace
 
 ResultFolder::ResultFolder(fs::path folder)
-    : folder_(std::move(folder)), draft_(folder_ / (".draft." + std::to_string(getpid()))) {
+    : folder_(std::move(folder)), draft_(folder_ / (kDraft + std::to_string(getpid()))) {
+  remove_leftovers(folder_, kDraft, "");
   std::error_code failed;
   for (fs::path path = fs::absolute(folder_); !fs::exists(path, failed); path = path.parent_path())
     made_.push_back(path);

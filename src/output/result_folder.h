@@ -7,7 +7,8 @@
 namespace exitance {
 
 /// Results are written into a draft folder within the folder and moved out of it, replacing earlier ones, when all that
-/// belongs together is there. What is not published is removed, and so are folders that were made for nothing.
+/// belongs together is there. What is not published is removed, and so are folders that were made for nothing and the
+/// drafts that killed processes have left.
 class ResultFolder {
  public:
   /// Makes the folder (and its parents) and the draft in it, so that a long piece of work fails at its start when its

@@ -7,7 +7,7 @@
 #include "src/form_factor/sampled_area_rows.h"
 #include "src/output/run_clock.h"
 #include "src/reference/matrix_file.h"
-#include "src/reference/pair_run.h"
+#include "src/form_factor/pair_run.h"
 #include "src/scene/input_error.h"
 
 namespace exitance {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <span>
 
-#include "src/reference/archive.h"
+#include "src/output/archive.h"
 
 namespace exitance {
 namespace {

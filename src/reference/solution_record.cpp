@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "src/form_factor/area_cell.h"
-#include "src/reference/archive.h"
+#include "src/output/archive.h"
 
 namespace exitance {
 namespace {

@@ -13,6 +13,9 @@ namespace exitance {
 /// it.
 class CompensatedSum {
  public:
+  CompensatedSum() = default;
+  CompensatedSum(double high, double low) : high_(high), low_(low) {}
+
   void add(double term) {
     const double sum = high_ + term;
     const double part = sum - high_;

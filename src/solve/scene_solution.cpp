@@ -8,6 +8,7 @@
 #include <random>
 
 #include "src/form_factor/area_rows.h"
+#include "src/form_factor/point_run.h"
 #include "src/form_factor/sampled_area_rows.h"
 #include "src/output/run_clock.h"
 #include "src/scene/input_error.h"
@@ -69,6 +70,7 @@ class SceneSolver {
       shoot_without_matrix();
     }
     measure_energy_balance();
+    result_.may_go_on = result_.stopped && stopped();
     if (!stopped() && options_.receivers == Receivers::points) measure_reciprocity();
     return std::move(result_);
   }
@@ -100,23 +102,44 @@ class SceneSolver {
                     static_cast<double>(options_.memory_limit) * 0x1p-30));
   }
 
+  /// Of the work that is named. Null where none is asked for.
+  Checkpoint* begin_checkpoint(const char* work) {
+    if (options_.checkpoint.empty()) return nullptr;
+    result_.checkpoint = std::make_shared<Checkpoint>(
+        options_.checkpoint, fmt::format("{}work {}\n", options_.key, work), Checkpoint::OtherRun::forgotten);
+    return result_.checkpoint.get();
+  }
+
+  [[noreturn]] void refuse_unfinished_rows() const {
+    throw LimitError(fmt::format("stopped before the form factors were complete; {}",
+                                 result_.checkpoint == nullptr
+                                     ? "nothing was saved"
+                                     : fmt::format("finished rows are kept in {}, from where the same command goes on",
+                                                   options_.checkpoint.string())));
+  }
+
   bool stopped() const { return options_.stop && options_.stop(); }
 
-  FormFactorMatrix area_rows_of_elements(const Progress& report) {
+  FormFactorMatrix area_rows_of_elements() {
     if (options_.rays) {
+      const auto report = [&](double fraction, std::string_view label) {
+        if (options_.progress) options_.progress(fraction, label);
+        if (fraction < 1 && stopped()) refuse_unfinished_rows();
+      };
       SampledAreaRows rows =
           sampled_area_rows(result_.mesh, result_.soup, ExchangeScene::Unit::element, *options_.rays, report);
       result_.statistics = rows.statistics;
       return std::move(rows.F);
     }
-    PairOptions how;
-    how.tolerance = options_.form_factor_tolerance;
-    how.stop = options_.stop;
-    AreaRows rows = area_rows(result_.mesh, result_.soup, how, options_.seed, report);
-    result_.statistics.pairs = {rows.statistics.pairs[static_cast<std::size_t>(PairClass::facing_away)],
-                                rows.statistics.pairs[static_cast<std::size_t>(PairClass::open)],
-                                rows.statistics.pairs[static_cast<std::size_t>(PairClass::blocked)],
-                                rows.statistics.pairs[static_cast<std::size_t>(PairClass::partial)]};
+    PairRunOptions how;
+    how.pairs.tolerance = options_.form_factor_tolerance;
+    how.pairs.stop = options_.stop;
+    how.block_seconds = options_.save_every;
+    how.progress = options_.progress;
+    AreaRows rows = area_rows(result_.mesh, result_.soup, how, options_.seed, begin_checkpoint("rows of areas"));
+    const auto pairs = [&](PairClass kind) { return rows.pairs[static_cast<std::size_t>(kind)]; };
+    result_.statistics.pairs = {pairs(PairClass::facing_away), pairs(PairClass::open), pairs(PairClass::blocked),
+                                pairs(PairClass::partial)};
     result_.statistics.covered_points = rows.covered_elements;
     result_.statistics.closure_max_defect = rows.closure_max_defect;
     result_.closure_error = rows.largest_row_error;
@@ -125,19 +148,17 @@ class SceneSolver {
   }
 
   FormFactorMatrix rows() {
-    const auto refuse = [] { throw LimitError("stopped before the form factors were complete; nothing was saved"); };
-    const auto report = [&](double fraction, std::string_view label) {
-      if (options_.progress) options_.progress(fraction, label);
-      if (fraction < 1 && stopped()) refuse();
-    };
     FormFactorMatrix F;
     if (options_.receivers == Receivers::area) {
-      F = area_rows_of_elements(report);
-      if (F.rows() == 0) refuse();
+      F = area_rows_of_elements();
+      if (F.rows() == 0) refuse_unfinished_rows();
     } else {
-      PointRows rows = point_rows(*visibility_, 0, result_.mesh.elements.size(), report);
-      result_.statistics = rows.statistics;
-      F = std::move(rows.F);
+      PointRun run = run_points(
+          *visibility_, {.block_seconds = options_.save_every, .stop = options_.stop, .progress = options_.progress},
+          begin_checkpoint("rows of points"));
+      if (!run.complete) refuse_unfinished_rows();
+      result_.statistics = run.rows.statistics;
+      F = std::move(run.rows.F);
     }
     result_.measured_points = result_.mesh.elements.size();
     result_.element_row_sum = row_sums(F);
@@ -163,44 +184,38 @@ class SceneSolver {
 
   void shoot_with_matrix() {
     const FormFactorMatrix columns = transpose(rows());
-    shoot_all(column_of(columns));
+    shoot_all(column_of(columns), {});
     all_columns_known_ = true;
     result_.seconds_solve = stopwatch_.lap();
   }
 
   void shoot_without_matrix() {
-    const std::size_t n = result_.mesh.elements.size();
-    result_.element_row_sum.assign(n, 0);
-    std::vector<bool> is_known(result_.mesh.patches.size());
-    const auto column = [&](std::size_t patch, std::span<double> F, std::span<double> F_error) {
-      if (!point_column(*visibility_, patch, F, F_error, options_.stop)) return false;
-      if (is_known[patch]) return true;
-      is_known[patch] = true;
-      for (std::size_t e = 0; e < n; ++e) result_.element_row_sum[e] += F[e];
-      return true;
-    };
-    shoot_all(column);
-    // What never shot, because it is black, is needed for the energy that escapes.
-    std::vector<double> F(n), F_error(n);
-    all_columns_known_ = !result_.stopped;
-    for (std::size_t p = 0; p < is_known.size() && all_columns_known_; ++p) {
-      if (!is_known[p]) all_columns_known_ = column(p, F, F_error);
-    }
+    // What never shoots, because it is black, is needed for the energy that escapes.
+    const ShootSolution solution = shoot_all(
+        [&](std::size_t patch, std::span<double> F, std::span<double> F_error) {
+          return point_column(*visibility_, patch, F, F_error, options_.stop);
+        },
+        {.all_columns = true, .checkpoint = begin_checkpoint("shots"), .save_seconds = options_.save_every});
+    result_.element_row_sum = solution.element_row_sum;
+    all_columns_known_ = !result_.stopped && solution.all_columns_known;
     result_.stopped = !all_columns_known_;
     if (!stopped()) measure_sample();
     result_.seconds_solve = stopwatch_.lap();
   }
 
-  void shoot_all(const ShootColumn& column) {
-    ShootOptions how{.tolerance = options_.tolerance, .progress = options_.progress, .stop = options_.stop};
+  ShootSolution shoot_all(const ShootColumn& column, ShootOptions how) {
+    how.tolerance = options_.tolerance;
+    how.progress = options_.progress;
+    how.stop = options_.stop;
     if (options_.max_shots) how.max_shots = *options_.max_shots;
     ShootSolution solution = shoot(result_.discretisation, column, how);
     result_.stopped = !solution.patches.converged && (solution.patches.iterations >= how.max_shots || stopped());
     if (result_.stopped) result_.ambient = ambient_estimate(result_.discretisation, solution.unshot);
-    result_.patches = std::move(solution.patches);
-    result_.element_H = std::move(solution.element_H);
-    result_.element_B = std::move(solution.element_B);
+    result_.patches = solution.patches;
+    result_.element_H = solution.element_H;
+    result_.element_B = solution.element_B;
     result_.form_factor_error = solution.form_factor_error;
+    return solution;
   }
 
   // Whole rows of some elements, for what columns cannot tell.

@@ -2,14 +2,18 @@
 // From a scene to its radiosity: mesh, form factors, solution, and the numbers that tell how good it is.
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "geometry/polygon_soup.h"
 #include "src/form_factor/point_rows.h"
+#include "src/output/checkpoint.h"
 #include "src/output/progress.h"
 #include "src/scene/patch_mesh.h"
 #include "src/scene/scene.h"
@@ -47,6 +51,12 @@ struct SolveOptions {
       false;               ///< whether `stop` is meant to end the work in time, so that shooting should begin at once
   std::uint64_t seed = 1;  ///< of the pairs whose reciprocity is measured
   Progress progress;
+
+  /// Folder in which finished rows of form factors, or the state of shooting without a matrix, are kept, and found when
+  /// the same work is begun again; empty: none. Rows of receivers `area` by rays are not.
+  std::filesystem::path checkpoint = {};
+  std::string key = {};   ///< what it all depends on, as a Checkpoint's; with another one the work begins anew
+  double save_every = 2;  ///< seconds after which it is saved
 };
 
 struct SceneSolution {
@@ -64,7 +74,8 @@ struct SceneSolution {
   /// Of each band, what shooting that was ended early had still to spread (ambient_estimate): for display only, where
   /// B + ρ · ambient is shown. Empty otherwise.
   std::vector<double> ambient;
-  bool stopped = false;  ///< max_shots or `stop` ended the work before the tolerance was reached and all rows were known
+  bool stopped =
+      false;  ///< max_shots or `stop` ended the work before the tolerance was reached and all rows were known
 
   Receivers receivers = Receivers::points;
   std::optional<RayOptions> rays;  ///< as asked
@@ -81,16 +92,22 @@ struct SceneSolution {
   /// None where no such pair was found, or time was up.
   std::optional<double> reciprocity_max_defect;
 
+  /// To be removed when the solution is saved, unless the work `may_go_on`. Null without SolveOptions::checkpoint.
+  std::shared_ptr<Checkpoint> checkpoint;
+  bool may_go_on = false;  ///< whether `stop` ended it
+
   double seconds_form_factors = 0, seconds_solve = 0;  ///< wall clock; shooting without a matrix is all `solve`
 };
 
 /// The materials and areas of a mesh of the scene.
 Discretisation discretise(const Scene& scene, const PatchMesh& mesh);
 
-/// Solves the scene. The same bits for any number of threads. REQUIRES: a scene as read_scene returns it.
+/// Solves the scene. The same bits for any number of threads, and however often it was ended and begun
+/// again with a checkpoint. REQUIRES: a scene as read_scene returns it.
 /// Throws InputError for a scene in which no surface has an area, LimitError when the form factors of gathering would
 /// not fit in memory_limit (the message tells how much they need) and when `stop` ends the work before there is any
-/// solution, InvalidSystem when form factors or materials are out of range, std::invalid_argument for options that are.
+/// solution (the message tells what is kept), InvalidSystem when form factors or materials are out of range,
+/// std::invalid_argument for options that are.
 SceneSolution solve_scene(const Scene& scene, const SolveOptions& options = {});
 
 }  // namespace exitance

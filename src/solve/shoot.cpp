@@ -8,7 +8,11 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <string>
+#include <utility>
 
+#include "src/output/archive.h"
+#include "src/output/run_clock.h"
 #include "src/solve/compensated.h"
 #include "src/solve/error_bound.h"
 
@@ -16,6 +20,34 @@ namespace exitance {
 namespace {
 
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
+
+/// A state takes no more than this share of the time to save.
+constexpr double kShareOfSaving = 0.05;
+
+void write_sums(ArchiveWriter& file, const std::string& name, std::span<const CompensatedSum> sums) {
+  std::vector<double> high, low;
+  for (const CompensatedSum& sum : sums) {
+    high.push_back(sum.high());
+    low.push_back(sum.low());
+  }
+  file.write(name, std::span<const double>(high));
+  file.write(name + "_low", std::span<const double>(low));
+}
+
+/// In place of as many.
+template <class Value>
+void take(const ArchiveReader& file, std::vector<Value> found, std::vector<Value>& values) {
+  if (found.size() != values.size()) file.refuse("it is of another mesh");
+  values = std::move(found);
+}
+
+std::vector<CompensatedSum> sums_in(const ArchiveReader& file, const std::string& name) {
+  const std::vector<double> high = file.doubles(name), low = file.doubles(name + "_low");
+  if (high.size() != low.size()) file.refuse("its vectors do not fit each other");
+  std::vector<CompensatedSum> sums;
+  for (std::size_t k = 0; k < high.size(); ++k) sums.emplace_back(high[k], low[k]);
+  return sums;
+}
 
 // What has been shot and received so far.
 class Shooting {
@@ -28,6 +60,7 @@ class Shooting {
         F_(d.elements()),
         F_error_(d.elements()),
         row_sum_(d.elements()),
+        element_row_sum_(d.elements()),
         is_seen_(d.patches()),
         element_H_(d.elements() * d.bands),
         H_(d.patches() * d.bands),
@@ -45,6 +78,34 @@ class Shooting {
     measure();
   }
 
+  /// What is no consequence of something else.
+  void write(ArchiveWriter& file) const {
+    file.write("shots", std::span(&shots_, 1));
+    file.write("is_seen", std::span(is_seen_));
+    write_sums(file, "row_sum", row_sum_);
+    file.write("element_row_sum", std::span(element_row_sum_));
+    write_sums(file, "element_H", element_H_);
+    write_sums(file, "H", H_);
+    file.write("H_error", std::span(H_error_));
+    write_sums(file, "shot", shot_);
+  }
+  /// Goes on from there. Throws DamagedFile.
+  void read(const ArchiveReader& file) {
+    std::vector<std::uint64_t> shots{0};
+    take(file, file.uint64s("shots"), shots);
+    shots_ = shots[0];
+    take(file, file.uint8s("is_seen"), is_seen_);
+    take(file, sums_in(file, "row_sum"), row_sum_);
+    take(file, file.doubles("element_row_sum"), element_row_sum_);
+    take(file, sums_in(file, "element_H"), element_H_);
+    take(file, sums_in(file, "H"), H_);
+    take(file, file.doubles("H_error"), H_error_);
+    take(file, sums_in(file, "shot"), shot_);
+    for (std::size_t i = 0; i < B_.size(); ++i) emit(i);
+    measure();
+  }
+
+  std::uint64_t shots() const { return shots_; }
   const std::vector<double>& bounds() const { return bounds_; }
   double unshot_energy() const { return energy_; }
   bool only_rounding_is_left(double tolerance) const {
@@ -54,15 +115,22 @@ class Shooting {
     return true;
   }
 
+  bool is_seen(std::size_t patch) const { return is_seen_[patch] != 0; }
+  /// Fetches a column and adds it to the sums of rows. False when it was stopped.
+  bool look_at(std::size_t patch, const ShootColumn& column) {
+    std::fill(F_.begin(), F_.end(), 0.0);
+    std::fill(F_error_.begin(), F_error_.end(), 0.0);
+    if (!column(patch, F_, F_error_)) return false;
+    if (!is_seen(patch)) add_to_row_sums();
+    is_seen_[patch] = 1;
+    return true;
+  }
+
   /// False when the column was stopped: then nothing is shot.
   bool shoot_strongest(const ShootColumn& column) {
     const std::size_t from = strongest_;
-    std::fill(F_.begin(), F_.end(), 0.0);
-    std::fill(F_error_.begin(), F_error_.end(), 0.0);
-    if (!column(from, F_, F_error_)) return false;
-    if (!is_seen_[from]) check_row_sums();
-    is_seen_[from] = true;
-
+    if (!look_at(from, column)) return false;
+    ++shots_;
     const std::uint32_t bands = d_.bands;
     const std::vector<double> amount(unshot_.begin() + static_cast<std::ptrdiff_t>(from * bands),
                                      unshot_.begin() + static_cast<std::ptrdiff_t>((from + 1) * bands));
@@ -74,14 +142,16 @@ class Shooting {
     return true;
   }
 
-  ShootSolution solution(std::uint64_t shots, double tolerance) const {
+  ShootSolution solution(double tolerance) const {
     ShootSolution result;
     result.patches.B = B_;
     for (const CompensatedSum& H : H_) result.patches.H.push_back(H.value());
     for (const CompensatedSum& H : element_H_) result.element_H.push_back(H.value());
     result.element_B = element_exitance(d_, result.element_H);
     result.unshot = unshot_;
-    result.patches.iterations = shots;
+    result.element_row_sum = element_row_sum_;
+    result.all_columns_known = std::ranges::find(is_seen_, 0) == is_seen_.end();
+    result.patches.iterations = shots_;
     result.patches.error_bound = *std::max_element(bounds_.begin(), bounds_.end());
     result.patches.converged = result.patches.error_bound <= tolerance;
     for (std::size_t b = 0; b < d_.bands; ++b) {
@@ -115,9 +185,14 @@ class Shooting {
       const std::size_t i = p * bands + b;
       H_[i].add_product(F, amount[b]);
       H_error_[i] += error * std::abs(amount[b]);
-      B_[i] = d_.E[i] + d_.rho[i] * H_[i].value();
-      unshot_[i] = (B_[i] - shot_[i].high()) - shot_[i].low();
+      emit(i);
     }
+  }
+
+  // What is left to shoot of what was received.
+  void emit(std::size_t i) {
+    B_[i] = d_.E[i] + d_.rho[i] * H_[i].value();
+    unshot_[i] = (B_[i] - shot_[i].high()) - shot_[i].low();
   }
 
   // Bounds, and who shoots next.
@@ -147,8 +222,9 @@ class Shooting {
     bounds_ = error_bounds(norm_, rounding_, largest_rho_, max_B_);
   }
 
-  void check_row_sums() {
+  void add_to_row_sums() {
     for (std::size_t e = 0; e < d_.elements(); ++e) {
+      element_row_sum_[e] += F_[e];
       row_sum_[e].add(F_[e] - F_error_[e]);
       if (!(row_sum_[e].value() <= 1 + row_sum_rounding(d_.patches()))) {
         std::ostringstream what;
@@ -162,8 +238,9 @@ class Shooting {
   const Discretisation& d_;
   std::vector<double> area_, importance_, largest_rho_;
   std::vector<double> F_, F_error_;                       // the column in use
-  std::vector<CompensatedSum> row_sum_;                   // of each element, over the columns seen
-  std::vector<bool> is_seen_;                             // columns
+  std::vector<CompensatedSum> row_sum_;                   // at least, of each element, over the columns seen
+  std::vector<double> element_row_sum_;                   // of each element, over the columns seen
+  std::vector<std::uint8_t> is_seen_;                     // columns
   std::vector<CompensatedSum> element_H_;                 // each element and band
   std::vector<CompensatedSum> H_;                         // each patch and band
   std::vector<double> H_error_;                           // of H_, by the errors of the form factors
@@ -172,6 +249,34 @@ class Shooting {
   std::vector<double> norm_, max_B_, rounding_, bounds_;  // each band
   double energy_ = 0;
   std::size_t strongest_ = 0;
+  std::uint64_t shots_ = 0;
+};
+
+// Saves the state now and then.
+class Keeper {
+ public:
+  explicit Keeper(const ShootOptions& options) : checkpoint_(options.checkpoint), interval_(options.save_seconds) {}
+
+  void take_up(Shooting& state) const {
+    if (checkpoint_ == nullptr || checkpoint_->parts().empty()) return;
+    state.read(checkpoint_->open(checkpoint_->parts().back()));
+  }
+  void keep_in_time(const Shooting& state) {
+    if (checkpoint_ == nullptr || since_.seconds() < interval_) return;
+    const RunClock saving;
+    keep(state);
+    interval_ = std::max(interval_, saving.seconds() * (interval_ > 0 ? 1 / kShareOfSaving : 0));
+    since_ = RunClock();
+  }
+  void keep(const Shooting& state) const {
+    if (checkpoint_ == nullptr) return;
+    checkpoint_->replace([&](ArchiveWriter& file) { state.write(file); });
+  }
+
+ private:
+  Checkpoint* checkpoint_;
+  double interval_;
+  RunClock since_;
 };
 
 }  // namespace
@@ -192,7 +297,7 @@ ShootSolution shoot(const Discretisation& d, const ShootColumn& column, const Sh
   if (!(options.tolerance > 0)) throw std::invalid_argument("shoot: the tolerance must be positive");
   if (d.patches() == 0) {
     ShootSolution nothing;
-    nothing.patches.converged = true;
+    nothing.patches.converged = nothing.all_columns_known = true;
     return nothing;
   }
   Shooting state(d);
@@ -201,18 +306,27 @@ ShootSolution shoot(const Discretisation& d, const ShootColumn& column, const Sh
     return *std::max_element(state.bounds().begin(), state.bounds().end()) <= options.tolerance;
   };
   double shown = 0;
-  std::uint64_t shots = 0;
-  const auto stopped = [&] { return shots >= options.max_shots || (options.stop && options.stop()); };
+  Keeper keeper(options);
+  keeper.take_up(state);
+  const auto asked_to_stop = [&] { return options.stop && options.stop(); };
+  const auto stopped = [&] { return state.shots() >= options.max_shots || asked_to_stop(); };
   while (!stopped() && !solved() && !state.only_rounding_is_left(options.tolerance)) {
     if (!state.shoot_strongest(column)) break;
-    ++shots;
+    keeper.keep_in_time(state);
     if (options.progress) {
       const double left = std::max(state.unshot_energy() / first_energy, options.tolerance);
       shown = std::clamp(std::log(left) / std::log(options.tolerance), shown, 1.0);
       options.progress(shown, "solve");
     }
   }
-  return state.solution(shots, options.tolerance);
+  const bool ended_early = !solved() && stopped();
+  for (std::size_t p = 0; options.all_columns && !ended_early && p < d.patches(); ++p) {
+    if (state.is_seen(p)) continue;
+    if (!state.look_at(p, column)) break;
+    keeper.keep_in_time(state);
+  }
+  if (asked_to_stop()) keeper.keep(state);
+  return state.solution(options.tolerance);
 }
 
 std::vector<double> ambient_estimate(const Discretisation& d, std::span<const double> unshot) {

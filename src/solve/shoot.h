@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "src/output/checkpoint.h"
 #include "src/output/progress.h"
 #include "src/solve/radiosity_system.h"
 
@@ -25,11 +26,19 @@ struct ShootOptions {
   std::uint64_t max_shots = UINT64_MAX;
   Progress progress = {};           ///< fraction by the logarithm of the unshot energy
   std::function<bool()> stop = {};  ///< asked between shots: true ends the work with what there is; may be empty
+  /// Whether to ask for the columns of patches that never shot, too, once nothing is left to shoot.
+  bool all_columns = false;
+  /// Where the state is kept every so many seconds, and when `stop` ends the work, and from where it goes on with the
+  /// same bits; may be null. It belongs to the same discretisation, form factors and options.
+  Checkpoint* checkpoint = nullptr;
+  double save_seconds = 2;
 };
 
 struct ShootSolution {
   Solution patches;                          ///< iterations: the shots
   std::vector<double> element_H, element_B;  ///< each element and band
+  std::vector<double> element_row_sum;       ///< Σ F of each element, over the columns that were asked for
+  bool all_columns_known = false;
   std::vector<double> unshot;  ///< what each patch (and band) still had to shoot: the residual of what was shot
   /// What the errors of the form factors add to error_bound, relative to max |B|, worst band (as in error_bound.h).
   double form_factor_error = 0;

@@ -115,7 +115,10 @@ struct Work {
 std::vector<Work> long_work() {
   const std::string cube = data("furnace_cube.toml");
   const std::string frames = "dynamic " + data("cube.toml") + " --image-size 32 -o @/frames";
-  return {{"solve", "solve " + cube + " --patch-size 0.5 -o @/solved"},
+  return {{"solve", "solve " + cube + " --patch-size 0.5 --save-every 0 -o @/solved"},
+          {"solve_shots", "solve " + cube +
+                              " --patch-size 0.5 --method shoot --time-limit 1000 --tolerance 1e-3 --save-every 0 "
+                              "-o @/solved"},
           {"formfactor", "formfactor " + cube + " --patch-size 0.25 --save-every 0 -o @/a.h5"},
           {"reference", "reference " + data("box_on_floor.toml") + " --error 3e-2 --save-every 0 -o @/r.h5"},
           {"compare", "compare " + cube + " --patch-size 0.25 --save-every 0 --against rays:16 -o @/worst.vtp"},
@@ -199,6 +202,10 @@ TEST_P(LongWork, IsWholeOrNotThereAfterAKillAtAnyMoment) {
   const Outcome last = run(command(GetParam(), folder));
   EXPECT_EQ(last.code, GetParam().code) << last.err;
   expect_all(folder);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().lexically_relative(folder).string();
+    EXPECT_TRUE(!entry.is_regular_file() || names_.contains(name)) << name << " is left";
+  }
 }
 
 TEST_P(LongWork, GoesOnWhenAFullDiskHasRoomAgain) {
@@ -224,6 +231,59 @@ nlohmann::json answers(nlohmann::json report) {
   for (auto& row : report["rows"]) row.erase("seconds");
   return report["rows"];
 }
+
+/// What a solution says, but for times and memory.
+nlohmann::json solution_in(const std::filesystem::path& folder) {
+  nlohmann::json report = json_in(folder / "result.json");
+  for (const char* name : {"seconds", "peak_memory_bytes", "threads"}) report.erase(name);
+  report.at("manifest").erase("threads");
+  report.at("manifest").erase("options");
+  return report;
+}
+
+/// How a scene is solved.
+class KilledSolve : public testing::TestWithParam<const char*> {
+ protected:
+  std::string command(const char* folder, const std::string& more = "") const {
+    return "solve " + data("box_on_floor.toml") + " --save-every 0 " + GetParam() + more + " -o " +
+           (scratch_ / folder).string();
+  }
+  /// The name of the part that was kept last.
+  std::string last_part() const {
+    std::string last;
+    std::error_code failed;
+    for (std::filesystem::directory_iterator part(kept_, failed), end; !failed && part != end; part.increment(failed)) {
+      if (part->path().extension() == ".h5") last = std::max(last, part->path().filename().string());
+    }
+    return last;
+  }
+  void end_when_more_is_kept(const std::string& command, int signal, int code) const {
+    const std::string first = last_part();
+    EXPECT_EQ(Running(command).end_when([&] { return last_part() > first; }, signal), code);
+  }
+
+  const ScratchFolder scratch_;
+  const std::filesystem::path kept_ = scratch_ / "killed/unfinished.parts";
+};
+
+TEST_P(KilledSolve, GoesOnWithTheSameBits) {
+  ASSERT_EQ(run(command("whole")).code, 0);
+  end_when_more_is_kept(command("killed", " --seed 2"), SIGKILL, -1);  // other work: it is forgotten
+  end_when_more_is_kept(command("killed"), SIGKILL, -1);
+  end_when_more_is_kept(command("killed"), SIGKILL, -1);
+  const std::string before = last_part();
+  end_when_more_is_kept(command("killed"), SIGINT, 4);
+  EXPECT_GT(last_part(), before);
+  ASSERT_EQ(run(command("killed")).code, 0);
+  EXPECT_FALSE(exists(kept_));
+  EXPECT_EQ(solution_in(scratch_ / "killed"), solution_in(scratch_ / "whole"));
+  for (const char* name : {"solution.vtp", "solution.ply", "image.png"})
+    EXPECT_TRUE(contents(scratch_ / "killed" / name) == contents(scratch_ / "whole" / name)) << name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, KilledSolve,
+                         testing::Values("--patch-size 0.5 --elements 3", "--patch-size 1.5 --receivers area",
+                                         "--patch-size 1 --method shoot --time-limit 1000 --tolerance 1e-3"));
 
 TEST(Kill, OfStressLosesNoQuestionThatWasKept) {
   const ScratchFolder scratch;

@@ -17,9 +17,7 @@ AreaRows rows_of(const char* scene_file, double patch_size, std::uint32_t elemen
   mesh_options.patch_size = patch_size;
   mesh_options.elements_per_edge = elements;
   const PatchMesh mesh = make_patch_mesh(scene, soup, mesh_options);
-  PairOptions options;
-  options.tolerance = tolerance;
-  return area_rows(mesh, soup, options, 1);
+  return area_rows(mesh, soup, {.pairs = {.tolerance = tolerance}}, 1);
 }
 
 double entry(const FormFactorMatrix& F, std::size_t row, std::uint32_t column) {

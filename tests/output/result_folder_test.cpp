@@ -1,6 +1,10 @@
 #include "src/output/result_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <string>
 
 #include "src/scene/input_error.h"
 #include "tests/output/scratch_folder.h"
@@ -25,6 +29,20 @@ TEST(ResultFolder, PublishesAllAndLeavesNoDraft) {
   EXPECT_EQ(contents(folder / "a"), "1");
   EXPECT_EQ(contents(folder / "b"), "2");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 2);
+}
+
+TEST(ResultFolder, DraftsOfKilledProcessesAreRemoved) {
+  const ScratchFolder scratch;
+  const pid_t dead = fork();
+  if (dead == 0) _exit(0);
+  waitpid(dead, nullptr, 0);
+  const auto of_the_dead = scratch / (".draft." + std::to_string(dead)), of_the_living = scratch / ".draft.1";
+  create_directory(of_the_dead);
+  create_directory(of_the_living);
+  write(of_the_dead / "a", "half");
+  const ResultFolder results(scratch / "");
+  EXPECT_FALSE(exists(of_the_dead));
+  EXPECT_TRUE(exists(of_the_living));
 }
 
 TEST(ResultFolder, KeepsEarlierResultsUntilPublished) {

@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <stdexcept>
+#include <string>
 #include <thread>
 
 #include "src/scene/input_error.h"
@@ -46,6 +48,26 @@ TEST(WholeFile, AStreamThatFailedIsNotRenamed) {
   EXPECT_THROW(write_whole_file(path, [](std::ostream& out) { out.setstate(std::ios::badbit); }), InputError);
   EXPECT_EQ(contents(path), "new");
   EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(WholeFile, WhatKilledProcessesLeftOfItIsRemoved) {
+  const ScratchFolder folder;
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  siginfo_t ended;
+  waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT);
+  const std::string dead = std::to_string(child);
+  const auto leave = [&] { std::ofstream(folder / ("a.txt." + dead + ".part")) << "half"; };
+  leave();
+  for (const char* name : {"a.txt.1.part", "a.txt.x.part", "a.txt..part"}) std::ofstream(folder / name);
+  for (const std::string name : {"a.txt.x", "b.txt."}) std::ofstream(folder / (name + dead + ".part"));
+  write_whole_file(folder / "a.txt", kText);
+  EXPECT_FALSE(exists(folder / ("a.txt." + dead + ".part"))) << "nobody has taken notice of its end";
+  waitpid(child, nullptr, 0);
+  leave();
+  write_whole_file(folder / "a.txt", kText);
+  EXPECT_FALSE(exists(folder / ("a.txt." + dead + ".part")));
+  EXPECT_EQ(folder.files(), 6u) << "those of living processes, of other files and what is no draft";
 }
 
 TEST(WholeFile, AMissingFolderIsNamed) {

@@ -9,9 +9,9 @@
 #include <limits>
 #include <random>
 
-#include "src/reference/archive.h"
+#include "src/output/archive.h"
 #include "src/scene/scene.h"
-#include "tests/reference/damage.h"
+#include "tests/output/damage.h"
 
 namespace exitance {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "geometry/contour_form_factor.h"
-#include "src/reference/pair_run.h"
+#include "src/form_factor/pair_run.h"
 
 namespace exitance {
 namespace {

@@ -10,9 +10,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "src/reference/archive.h"
+#include "src/output/archive.h"
 #include "src/reference/refined_mesh.h"
-#include "tests/reference/damage.h"
+#include "tests/output/damage.h"
 #include "tests/reference/half_shadow.h"
 
 namespace exitance {

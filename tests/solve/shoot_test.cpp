@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "src/solve/error_bound.h"
 #include "src/solve/gather.h"
+#include "tests/output/scratch_folder.h"
 #include "tests/solve/random_enclosure.h"
 
 namespace exitance {
@@ -165,6 +169,79 @@ TEST(Shoot, AColumnThatIsStoppedIsNotShot) {
   EXPECT_EQ(stopped.patches.B, three.patches.B);
   EXPECT_EQ(stopped.element_H, three.element_H);
   EXPECT_EQ(stopped.unshot, three.unshot);
+}
+
+void expect_same(const ShootSolution& a, const ShootSolution& b) {
+  EXPECT_EQ(a.patches.B, b.patches.B);
+  EXPECT_EQ(a.patches.H, b.patches.H);
+  EXPECT_EQ(a.patches.iterations, b.patches.iterations);
+  EXPECT_EQ(a.patches.error_bound, b.patches.error_bound);
+  EXPECT_EQ(a.element_H, b.element_H);
+  EXPECT_EQ(a.element_B, b.element_B);
+  EXPECT_EQ(a.element_row_sum, b.element_row_sum);
+  EXPECT_EQ(a.unshot, b.unshot);
+  EXPECT_EQ(a.form_factor_error, b.form_factor_error);
+}
+
+TEST(Shoot, GoesOnFromWhatWasKeptWithTheSameBits) {
+  Cut scene = cut(random_enclosure(25, 3, 0.8, 1.0, 21), 5);
+  for (std::size_t b = 0; b < 3; ++b) scene.discretisation.rho[3 * 7 + b] = scene.discretisation.E[3 * 7 + b] = 0;
+  std::ranges::fill(scene.element_rows.F_error, 1e-17);
+  const Discretisation& d = scene.discretisation;
+  const FormFactorMatrix columns = transpose(scene.element_rows);
+  const ShootSolution whole = shoot(d, column_of(columns), {.all_columns = true});
+  EXPECT_TRUE(whole.all_columns_known);
+  const std::vector<double> sums = row_sums(scene.element_rows);
+  for (std::size_t e = 0; e < sums.size(); ++e) EXPECT_NEAR(whole.element_row_sum[e], sums[e], 1e-14);
+
+  const ScratchFolder folder;
+  // Stopped between two shots: the state is kept then. Killed within one: what was kept some time ago is.
+  for (const double save_seconds : {0.0, 1e9}) {
+    std::uint64_t asked = 0;
+    for (const std::uint64_t columns_before : {1, 5, 40}) {
+      Checkpoint checkpoint(folder / "state", "key");
+      std::uint64_t left = columns_before;
+      const auto counted = [&](std::size_t patch, std::span<double> F, std::span<double> F_error) {
+        ++asked;
+        if (save_seconds == 0 && left == 0) throw std::domain_error("killed");
+        --left;
+        return column_of(columns)(patch, F, F_error);
+      };
+      const ShootOptions options{.stop = [&] { return save_seconds > 0 && left == 0; },
+                                 .all_columns = true,
+                                 .checkpoint = &checkpoint,
+                                 .save_seconds = save_seconds};
+      if (save_seconds == 0) {
+        EXPECT_THROW(shoot(d, counted, options), std::domain_error);
+        --asked;
+      } else {
+        EXPECT_FALSE(shoot(d, counted, options).patches.converged);
+      }
+    }
+    Checkpoint checkpoint(folder / "state", "key");
+    const auto counted = [&](std::size_t patch, std::span<double> F, std::span<double> F_error) {
+      ++asked;
+      return column_of(columns)(patch, F, F_error);
+    };
+    expect_same(shoot(d, counted, {.all_columns = true, .checkpoint = &checkpoint}), whole);
+    EXPECT_EQ(asked, whole.patches.iterations + 1) << "no column twice for a shot, and that of the black patch";
+    checkpoint.remove();
+  }
+}
+
+TEST(Shoot, AStateOfAnotherMeshIsRefused) {
+  const ScratchFolder folder;
+  Checkpoint checkpoint(folder / "state", "key");
+  for (const std::size_t patches : {10, 11}) {
+    const RadiositySystem system = random_enclosure(patches, 1, 0.5, 1.0, 1);
+    const FormFactorMatrix columns = transpose(system.F);
+    const ShootOptions options{.checkpoint = &checkpoint, .save_seconds = 0};
+    if (patches == 10) {
+      shoot(one_element_each(system), column_of(columns), options);
+    } else {
+      EXPECT_THROW(shoot(one_element_each(system), column_of(columns), options), DamagedFile);
+    }
+  }
 }
 
 TEST(Shoot, NothingEmitsNothingIsShot) {

@@ -172,9 +172,7 @@ TEST_P(TurnedOrNot, AreasBetweenSolidsAreLeftOut) {
 
 TEST(Contacts, AreasThatAreCoveredInPartApproachExactOnes) {
   const Rows rows(book_on_board({}));
-  PairOptions pairs;
-  pairs.tolerance = 1e-3;
-  const auto truth = rows.dense(area_rows(rows.mesh, rows.soup, pairs, 1).F);
+  const auto truth = rows.dense(area_rows(rows.mesh, rows.soup, {.pairs = {.tolerance = 1e-3}}, 1).F);
   const auto error = [&](std::uint32_t n) {
     const RayOptions options{.rays = n, .estimator = Estimator::hemisphere};
     return rms(rows.dense(sampled_area_rows(rows.mesh, rows.soup, ExchangeScene::Unit::element, options).F), truth);

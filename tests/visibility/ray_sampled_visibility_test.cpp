@@ -114,9 +114,7 @@ TEST(RaySampledVisibility, RaysAndErrorsAreCounted) {
 
 TEST(RaySampledVisibility, AreasAreAveragedOver) {
   const Room& r = room();
-  PairOptions exactly;
-  exactly.tolerance = 1e-6;
-  const std::vector<double> truth = dense(area_rows(r.mesh, r.soup, exactly, 1).F);
+  const std::vector<double> truth = dense(area_rows(r.mesh, r.soup, {.pairs = {.tolerance = 1e-6}}, 1).F);
   double previous = 0.1;
   for (const std::uint32_t n : {16u, 1024u}) {
     const double error =

@@ -1,4 +1,4 @@
-#include "src/reference/checkpoint.h"
+#include "src/form_factor/kept_rows.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,10 +11,11 @@
 #include <map>
 #include <random>
 #include <set>
+#include <span>
 #include <stdexcept>
+#include <tuple>
 
-#include "src/reference/archive.h"
-#include "tests/reference/damage.h"
+#include "tests/output/damage.h"
 
 namespace exitance {
 namespace {
@@ -58,7 +59,7 @@ bool operator==(const PairRows& a, const PairRows& b) {
 
 std::set<std::uint32_t> rows_in(const Checkpoint& checkpoint) {
   std::set<std::uint32_t> found;
-  for (const PairRows& part : checkpoint.finished()) {
+  for (const PairRows& part : kept_pairs(checkpoint)) {
     PairRows expected;
     for (const std::uint32_t row : part.row) append_row(expected, row);
     EXPECT_TRUE(part == expected);
@@ -82,14 +83,14 @@ TEST(Checkpoint, RowsComeBackBitForBitInTheirOrder) {
   const auto path = folder / "m.h5.parts";
   {
     Checkpoint checkpoint(path, kKey);
-    EXPECT_TRUE(checkpoint.finished().empty());
-    checkpoint.add(some_rows(10, 30));
-    checkpoint.add(some_rows(0, 1));
-    EXPECT_EQ(checkpoint.finished().size(), 2u);
+    EXPECT_TRUE(kept_pairs(checkpoint).empty());
+    keep_pairs(checkpoint, some_rows(10, 30));
+    keep_pairs(checkpoint, some_rows(0, 1));
+    EXPECT_EQ(kept_pairs(checkpoint).size(), 2u);
   }
   Checkpoint checkpoint(path, kKey);
-  checkpoint.add(some_rows(40, 45));
-  const std::vector<PairRows> parts = checkpoint.finished();
+  keep_pairs(checkpoint, some_rows(40, 45));
+  const std::vector<PairRows> parts = kept_pairs(checkpoint);
   ASSERT_EQ(parts.size(), 3u);
   EXPECT_TRUE(parts[0] == some_rows(10, 30));
   EXPECT_TRUE(parts[1] == some_rows(0, 1));
@@ -99,11 +100,11 @@ TEST(Checkpoint, RowsComeBackBitForBitInTheirOrder) {
 TEST(Checkpoint, IsRemovedWithEverythingOfItsOwn) {
   const ScratchFolder folder;
   Checkpoint first(folder / "a.parts", kKey);
-  first.add(some_rows(0, 3));
+  keep_pairs(first, some_rows(0, 3));
   first.remove();
   EXPECT_EQ(folder.files(), 0u);
   Checkpoint second(folder / "b.parts", kKey);
-  second.add(some_rows(0, 3));
+  keep_pairs(second, some_rows(0, 3));
   put(folder / "b.parts" / "notes.txt", "mine");
   second.remove();
   EXPECT_EQ(contents(folder / "b.parts" / "notes.txt"), "mine");
@@ -111,17 +112,23 @@ TEST(Checkpoint, IsRemovedWithEverythingOfItsOwn) {
 
 TEST(Checkpoint, OfAnotherRunIsNamedWithWhatDiffers) {
   const ScratchFolder folder;
-  { Checkpoint(folder / "a.parts", kKey).add(some_rows(0, 3)); }
+  {
+    Checkpoint checkpoint(folder / "a.parts", kKey);
+    keep_pairs(checkpoint, some_rows(0, 3));
+  }
   const Checkpoint other(folder / "a.parts", "mesh 1234\ntolerance 1e-6\nversion 0.1");
-  EXPECT_THAT(error_of([&] { other.finished(); }),
-              AllOf(HasSubstr("rows-000001.h5"), HasSubstr("\"tolerance 1e-9\" there, \"tolerance 1e-6\" here")));
+  EXPECT_THAT(error_of([&] { kept_pairs(other); }),
+              AllOf(HasSubstr("part-000001.h5"), HasSubstr("\"tolerance 1e-9\" there, \"tolerance 1e-6\" here")));
 }
 
 TEST(Checkpoint, OfAShorterKeyIsNamedToo) {
   const ScratchFolder folder;
-  { Checkpoint(folder / "a.parts", kKey).add(some_rows(0, 3)); }
+  {
+    Checkpoint checkpoint(folder / "a.parts", kKey);
+    keep_pairs(checkpoint, some_rows(0, 3));
+  }
   const Checkpoint other(folder / "a.parts", std::string(kKey) + "\nseed 2");
-  EXPECT_THAT(error_of([&] { other.finished(); }), HasSubstr("\"\" there, \"seed 2\" here"));
+  EXPECT_THAT(error_of([&] { kept_pairs(other); }), HasSubstr("\"\" there, \"seed 2\" here"));
 }
 
 TEST(Checkpoint, DamageIsNoticedAndNamed) {
@@ -129,10 +136,10 @@ TEST(Checkpoint, DamageIsNoticedAndNamed) {
   const auto path = folder / "a.parts";
   {
     Checkpoint checkpoint(path, kKey);
-    checkpoint.add(some_rows(0, 200));
-    checkpoint.add(some_rows(200, 400));
+    keep_pairs(checkpoint, some_rows(0, 200));
+    keep_pairs(checkpoint, some_rows(200, 400));
   }
-  const auto damaged = path / "rows-000002.h5";
+  const auto damaged = path / "part-000002.h5";
   const std::string bytes = contents(damaged);
   std::size_t noticed = 0;
   for (std::size_t at = 0; at < bytes.size(); at += 97) {
@@ -141,30 +148,30 @@ TEST(Checkpoint, DamageIsNoticedAndNamed) {
     try {
       EXPECT_EQ(rows_in(checkpoint).size(), 400u) << at;
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("rows-000002.h5"));
+      EXPECT_THAT(error.what(), HasSubstr("part-000002.h5"));
       ++noticed;
     }
   }
   EXPECT_GT(noticed, bytes.size() / 97 / 2);
   for (const std::size_t length : {std::size_t{0}, std::size_t{1}, bytes.size() / 2, bytes.size() - 1}) {
     put(damaged, bytes.substr(0, length));
-    EXPECT_THROW(Checkpoint(path, kKey).finished(), DamagedFile) << length;
+    EXPECT_THROW(kept_pairs(Checkpoint(path, kKey)), DamagedFile) << length;
   }
   // Removed, as the message says, it costs its own rows only, and a new part takes no old name.
-  std::filesystem::remove(path / "rows-000001.h5");
+  std::filesystem::remove(path / "part-000001.h5");
   put(damaged, bytes);
   Checkpoint checkpoint(path, kKey);
   EXPECT_EQ(rows_in(checkpoint).size(), 200u);
-  checkpoint.add(some_rows(0, 200));
+  keep_pairs(checkpoint, some_rows(0, 200));
   EXPECT_EQ(rows_in(checkpoint).size(), 400u);
 }
 
 TEST(Checkpoint, ARowThatIsThereTwiceIsNoticed) {
   const ScratchFolder folder;
   Checkpoint checkpoint(folder / "a.parts", kKey);
-  checkpoint.add(some_rows(0, 3));
-  checkpoint.add(some_rows(2, 4));
-  EXPECT_THAT(error_of([&] { checkpoint.finished(); }), AllOf(HasSubstr("rows-000002.h5"), HasSubstr("row 2")));
+  keep_pairs(checkpoint, some_rows(0, 3));
+  keep_pairs(checkpoint, some_rows(2, 4));
+  EXPECT_THAT(error_of([&] { kept_pairs(checkpoint); }), AllOf(HasSubstr("part-000002.h5"), HasSubstr("row 2")));
 }
 
 TEST(Checkpoint, RowsThatDoNotFitAreRefused) {
@@ -172,11 +179,11 @@ TEST(Checkpoint, RowsThatDoNotFitAreRefused) {
   Checkpoint checkpoint(folder / "a.parts", kKey);
   PairRows rows = some_rows(0, 3);
   rows.F_error.pop_back();
-  EXPECT_THROW(checkpoint.add(rows), std::invalid_argument);
+  EXPECT_THROW(keep_pairs(checkpoint, rows), std::invalid_argument);
   rows = some_rows(0, 3);
   rows.row.push_back(9);
-  EXPECT_THROW(checkpoint.add(rows), std::invalid_argument);
-  EXPECT_TRUE(checkpoint.finished().empty());
+  EXPECT_THROW(keep_pairs(checkpoint, rows), std::invalid_argument);
+  EXPECT_TRUE(kept_pairs(checkpoint).empty());
 }
 
 TEST(Checkpoint, BelongsToOneRunAtATime) {
@@ -186,6 +193,84 @@ TEST(Checkpoint, BelongsToOneRunAtATime) {
   put(folder / "file", "");
   EXPECT_THAT(error_of([&] { Checkpoint(folder / "file", kKey); }), HasSubstr("cannot be kept there"));
   EXPECT_THAT(error_of([&] { Checkpoint(folder / "file" / "a.parts", kKey); }), HasSubstr("cannot be kept there"));
+}
+
+TEST(Checkpoint, OfAnotherRunIsForgottenWhereThatIsAskedFor) {
+  const ScratchFolder folder;
+  const auto path = folder / "a.parts";
+  {
+    Checkpoint checkpoint(path, kKey);
+    keep_pairs(checkpoint, some_rows(0, 3));
+    keep_pairs(checkpoint, some_rows(3, 4));
+  }
+  EXPECT_EQ(kept_pairs(Checkpoint(path, kKey, Checkpoint::OtherRun::forgotten)).size(), 2u) << "it is its own";
+  {
+    Checkpoint other(path, "mesh 5678", Checkpoint::OtherRun::forgotten);
+    EXPECT_TRUE(other.parts().empty());
+    keep_pairs(other, some_rows(7, 9));
+  }
+  put(path / "part-000004.h5", "damaged");
+  EXPECT_TRUE(Checkpoint(path, "mesh 5678", Checkpoint::OtherRun::forgotten).parts().empty());
+  EXPECT_EQ(folder.files(), 0u) << "nothing was kept in it since";
+}
+
+TEST(Checkpoint, OfAStateHoldsTheLastOne) {
+  const ScratchFolder folder;
+  const auto path = folder / "a.parts";
+  {
+    Checkpoint checkpoint(path, kKey);
+    for (const double state : {1.0, 2.0, 3.0})
+      checkpoint.replace([&](ArchiveWriter& file) { file.write("state", std::span(&state, 1)); });
+  }
+  const Checkpoint checkpoint(path, kKey);
+  ASSERT_EQ(checkpoint.parts().size(), 1u);
+  EXPECT_EQ(checkpoint.open(checkpoint.parts()[0]).doubles("state"), std::vector<double>{3.0});
+}
+
+PointRows some_points(std::uint32_t count) {
+  const PairRows pairs = some_rows(0, count);
+  PointRows rows;
+  rows.F = {
+      .row_first = pairs.row_first, .column = pairs.column, .F = pairs.F, .F_error = pairs.F_error, .columns = 99};
+  rows.statistics = {.pairs = {count, 2, 3, 4},
+                     .stages = {5, 6, 7},
+                     .extended = 8,
+                     .covered_points = 9,
+                     .closure_max_defect = 0x1p-50,
+                     .rays = 10,
+                     .sampled = 11,
+                     .standard_error_sum = 0.1};
+  return rows;
+}
+
+void expect_same(const PointRows& a, const PointRows& b) {
+  EXPECT_EQ(a.F.row_first, b.F.row_first);
+  EXPECT_EQ(a.F.column, b.F.column);
+  EXPECT_EQ(a.F.F, b.F.F);
+  EXPECT_EQ(a.F.F_error, b.F.F_error);
+  EXPECT_EQ(a.F.columns, b.F.columns);
+  const PointRowStatistics &s = a.statistics, &t = b.statistics;
+  EXPECT_EQ(s.pairs, t.pairs);
+  EXPECT_EQ(
+      std::tie(s.stages.filter, s.stages.interval, s.stages.exact, s.extended, s.covered_points, s.rays, s.sampled),
+      std::tie(t.stages.filter, t.stages.interval, t.stages.exact, t.extended, t.covered_points, t.rays, t.sampled));
+  EXPECT_EQ(s.closure_max_defect, t.closure_max_defect);
+  EXPECT_EQ(s.standard_error_sum, t.standard_error_sum);
+}
+
+TEST(KeptRows, OfPointsComeBackWithTheirStatistics) {
+  const ScratchFolder folder;
+  {
+    Checkpoint checkpoint(folder / "a.parts", kKey);
+    EXPECT_EQ(kept_points(checkpoint, 99).F.rows(), 0u);
+    keep_points(checkpoint, some_points(10), 0);
+    keep_points(checkpoint, some_points(11), 10);
+    keep_points(checkpoint, some_points(30), 11);
+  }
+  expect_same(kept_points(Checkpoint(folder / "a.parts", kKey), 99), some_points(30));
+  std::filesystem::remove(folder / "a.parts" / "part-000002.h5");
+  EXPECT_THAT(error_of([&] { kept_points(Checkpoint(folder / "a.parts", kKey), 99); }),
+              AllOf(HasSubstr("part-000003.h5"), HasSubstr("do not begin at 10")));
 }
 
 constexpr std::uint32_t kRows = 60, kRowsAtOnce = 3;
@@ -200,7 +285,7 @@ constexpr std::uint32_t kRows = 60, kRowsAtOnce = 3;
     if (done.contains(row)) continue;
     append_row(block, row);
     if (block.row.size() < kRowsAtOnce && row + 1 < kRows) continue;
-    checkpoint.add(block);
+    keep_pairs(checkpoint, block);
     for (const std::uint32_t finished : block.row) {
       if (write(report, &finished, sizeof finished) != sizeof finished) _exit(1);
     }

@@ -1,4 +1,4 @@
-#include "src/reference/pair_run.h"
+#include "src/form_factor/pair_run.h"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 #include <atomic>
 #include <memory>
 
+#include "src/form_factor/kept_rows.h"
 #include "src/scene/reader.h"
 #include "tests/output/scratch_folder.h"
 
@@ -105,7 +106,7 @@ TEST_F(PairRunTest, ReportsOnlyWhatIsSaved) {
     last = fraction;
     double pairs = 0;
     const auto n = static_cast<double>(scene_.size());
-    for (const PairRows& part : checkpoint.finished()) {
+    for (const PairRows& part : kept_pairs(checkpoint)) {
       for (const std::uint32_t row : part.row) pairs += n - row;
     }
     EXPECT_DOUBLE_EQ(fraction, pairs / (n * (n + 1) / 2));

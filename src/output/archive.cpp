@@ -1,4 +1,4 @@
-#include "src/reference/archive.h"
+#include "src/output/archive.h"
 
 #include <fmt/format.h>
 #include <hdf5.h>
@@ -249,6 +249,8 @@ ArchiveReader::ArchiveReader(const std::filesystem::path& path, std::string_view
   if (const std::string found = text(kKind); found != kind)
     throw InputError(path.string(), 0, fmt::format("holds {}, not {}; name another file", found, kind));
 }
+
+ArchiveReader::ArchiveReader(ArchiveReader&&) noexcept = default;
 
 ArchiveReader::~ArchiveReader() {
   const Silence silence;

@@ -1,4 +1,4 @@
-#include "src/reference/archive.h"
+#include "src/output/archive.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@
 #include <numeric>
 #include <thread>
 
-#include "tests/reference/damage.h"
+#include "tests/output/damage.h"
 
 namespace exitance {
 namespace {

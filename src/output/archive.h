@@ -61,6 +61,7 @@ class ArchiveReader {
   /// Throws InputError when there is no such file or it is of another kind, DamagedFile when it is no sound HDF5 file.
   ArchiveReader(const std::filesystem::path& path, std::string_view kind);
   ~ArchiveReader();
+  ArchiveReader(ArchiveReader&&) noexcept;
   ArchiveReader(const ArchiveReader&) = delete;
   ArchiveReader& operator=(const ArchiveReader&) = delete;
 

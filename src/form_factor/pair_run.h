@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "src/form_factor/pair_rows.h"
+#include "src/output/checkpoint.h"
 #include "src/output/progress.h"
-#include "src/reference/checkpoint.h"
 
 namespace exitance {
 

@@ -1,4 +1,4 @@
-#include "src/reference/checkpoint.h"
+#include "src/output/checkpoint.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -10,22 +10,19 @@
 #include <charconv>
 #include <cstring>
 #include <optional>
-#include <set>
 #include <sstream>
-#include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <utility>
-
-#include "src/reference/archive.h"
 
 namespace exitance {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view kKind = "exitance rows of pairs 1";
-constexpr std::string_view kPrefix = "rows-", kSuffix = ".h5";
+constexpr std::string_view kKind = "exitance part of a run 1";
+constexpr std::string_view kPrefix = "part-", kSuffix = ".h5";
 
-// The number in "rows-<number>.h5".
+// The number in "part-<number>.h5".
 std::optional<std::uint64_t> part_number(const std::string& name) {
   if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) return std::nullopt;
   const char *first = name.data() + kPrefix.size(), *last = name.data() + name.size() - kSuffix.size();
@@ -36,14 +33,6 @@ std::optional<std::uint64_t> part_number(const std::string& name) {
 
 bool is_draft(const std::string& name) {
   return name.starts_with(kPrefix) && name.ends_with(".part");
-}
-
-bool fits(const PairRows& rows) {
-  const std::size_t pairs = rows.column.size();
-  return rows.row_first.size() == rows.row.size() + 1 && rows.row_first.front() == 0 &&
-         rows.row_first.back() == pairs && std::ranges::is_sorted(rows.row_first) && rows.F.size() == pairs &&
-         rows.F_error.size() == pairs && rows.F_reverse.size() == pairs && rows.F_reverse_error.size() == pairs &&
-         rows.mark.size() == pairs;
 }
 
 // The first line that differs, as it is there and here.
@@ -57,31 +46,12 @@ std::string difference(const std::string& there, const std::string& here) {
   return fmt::format("\"{}\" there, \"{}\" here", a, b);
 }
 
-PairRows read_part(const fs::path& path, const std::string& key) {
-  const ArchiveReader file(path, kKind);
-  if (const std::string found = file.text("key"); found != key) {
-    throw InputError(
-        path.string(), 0,
-        fmt::format("belongs to another run ({}); finish that one, or remove its folder", difference(found, key)));
-  }
-  PairRows rows{.row = file.uint32s("row"),
-                .row_first = file.uint64s("row_first"),
-                .column = file.uint32s("column"),
-                .F = file.doubles("F"),
-                .F_error = file.doubles("F_error"),
-                .F_reverse = file.doubles("F_reverse"),
-                .F_reverse_error = file.doubles("F_reverse_error"),
-                .mark = file.uint8s("mark")};
-  if (!fits(rows)) file.refuse("its vectors do not fit each other");
-  return rows;
-}
-
 }  // namespace
 
 Checkpoint::Lock::Lock(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (!failed) folder_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (!failed) folder_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder_ < 0) {
     throw InputError(folder.string(), 0,
                      fmt::format("a checkpoint cannot be kept there ({}); choose a folder that is writable",
@@ -98,7 +68,7 @@ Checkpoint::Lock::~Lock() {
   close(folder_);
 }
 
-Checkpoint::Checkpoint(fs::path folder, std::string key)
+Checkpoint::Checkpoint(fs::path folder, std::string key, OtherRun other)
     : folder_(std::move(folder)), key_(std::move(key)), lock_(folder_) {
   std::vector<std::pair<std::uint64_t, fs::path>> found;
   std::vector<fs::path> drafts;
@@ -114,44 +84,61 @@ Checkpoint::Checkpoint(fs::path folder, std::string key)
     parts_.push_back(std::move(path));
     next_ = number + 1;
   }
+  if (other == OtherRun::forgotten &&
+      !std::ranges::all_of(parts_, [this](const fs::path& part) { return is_sound(part); }))
+    remove_first(parts_.size());
 }
 
-std::vector<PairRows> Checkpoint::finished() const {
-  std::vector<PairRows> all;
-  std::set<std::uint32_t> seen;
-  for (const fs::path& path : parts_) {
-    all.push_back(read_part(path, key_));
-    for (const std::uint32_t row : all.back().row) {
-      if (!seen.insert(row).second)
-        throw DamagedFile(path, fmt::format("holds row {}, which another file of its folder holds already", row));
-    }
+bool Checkpoint::is_sound(const fs::path& part) const {
+  try {
+    open(part);
+    return true;
+  } catch (const InputError&) {
+    return false;
   }
-  return all;
 }
 
-void Checkpoint::add(const PairRows& rows) {
-  if (!fits(rows)) throw std::invalid_argument("Checkpoint::add: the vectors of the rows do not fit each other");
+ArchiveReader Checkpoint::open(const fs::path& part) const {
+  ArchiveReader file(part, kKind);
+  if (const std::string found = file.text("key"); found != key_) {
+    throw InputError(
+        part.string(), 0,
+        fmt::format("belongs to another run ({}); finish that one, or remove its folder", difference(found, key_)));
+  }
+  return file;
+}
+
+void Checkpoint::add(const std::function<void(ArchiveWriter&)>& write) {
   const fs::path path = folder_ / fmt::format("{}{:06}{}", kPrefix, next_, kSuffix);
   ArchiveWriter file(path, kKind);
   file.write("key", key_);
-  file.write("row", std::span(rows.row));
-  file.write("row_first", std::span(rows.row_first));
-  file.write("column", std::span(rows.column));
-  file.write("F", std::span(rows.F));
-  file.write("F_error", std::span(rows.F_error));
-  file.write("F_reverse", std::span(rows.F_reverse));
-  file.write("F_reverse_error", std::span(rows.F_reverse_error));
-  file.write("mark", std::span(rows.mark));
+  write(file);
   file.publish();
   parts_.push_back(path);
   ++next_;
 }
 
+void Checkpoint::replace(const std::function<void(ArchiveWriter&)>& write) {
+  add(write);
+  remove_first(parts_.size() - 1);
+}
+
 void Checkpoint::remove() {
+  remove_first(parts_.size());
   std::error_code ignored;
-  for (const fs::path& path : parts_) fs::remove(path, ignored);
-  parts_.clear();
   fs::remove(folder_, ignored);
+  is_removed_ = true;
+}
+
+Checkpoint::~Checkpoint() {
+  std::error_code ignored;
+  if (!is_removed_ && parts_.empty()) fs::remove(folder_, ignored);
+}
+
+void Checkpoint::remove_first(std::size_t count) {
+  std::error_code ignored;
+  for (std::size_t k = 0; k < count; ++k) fs::remove(parts_[k], ignored);
+  parts_.erase(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 }  // namespace exitance

@@ -1,4 +1,4 @@
-#include "src/reference/pair_run.h"
+#include "src/form_factor/pair_run.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <chrono>
 #include <span>
 
+#include "src/form_factor/kept_rows.h"
 #include "src/output/manifest.h"
-#include "src/reference/archive.h"
 
 namespace exitance {
 namespace {
@@ -36,7 +36,7 @@ class Stride {
 
 std::vector<PairRows> finished_rows(const Checkpoint& checkpoint) {
   try {
-    return checkpoint.finished();
+    return kept_pairs(checkpoint);
   } catch (const DamagedFile& damaged) {
     throw InputError(damaged.path().string(), 0, damaged.damage() + "; remove it, and its rows are computed again");
   }
@@ -96,7 +96,7 @@ PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Che
       for (const std::uint32_t row : finished.row) pairs_done += n - row;
     } while (whole && next < left.size() && seconds_since(begun) < options.block_seconds && !is_over());
     if (block.row.empty()) return run;
-    if (checkpoint != nullptr) checkpoint->add(block);
+    if (checkpoint != nullptr) keep_pairs(*checkpoint, block);
     run.finished += static_cast<std::uint32_t>(block.row.size());
     run.rows.push_back(std::move(block));
     if (options.progress) options.progress(pairs_done / pairs_left, "form factors");

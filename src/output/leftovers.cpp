@@ -1,0 +1,48 @@
+#include "src/output/leftovers.h"
+
+#include <signal.h>
+
+#include <cerrno>
+#include <charconv>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace exitance {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether it runs: one that was killed keeps its number until its parent has taken notice.
+bool is_alive(pid_t process) {
+  if (kill(process, 0) != 0 && errno == ESRCH) return false;
+  std::ifstream status("/proc/" + std::to_string(process) + "/stat");
+  std::string text;
+  std::getline(status, text);
+  const std::size_t name_end = text.rfind(") ");
+  return name_end == std::string::npos || (text[name_end + 2] != 'Z' && text[name_end + 2] != 'X');
+}
+
+/// Whether the name is that of a process which is no more.
+bool is_of_the_dead(std::string_view name, std::string_view before, std::string_view after) {
+  if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) return false;
+  name.remove_prefix(before.size());
+  name.remove_suffix(after.size());
+  pid_t process = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
+  return error == std::errc() && end == name.data() + name.size() && process > 0 && !is_alive(process);
+}
+
+}  // namespace
+
+void remove_leftovers(const fs::path& folder, std::string_view before, std::string_view after) {
+  std::error_code failed;
+  std::vector<fs::path> found;
+  for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
+    if (is_of_the_dead(entry->path().filename().native(), before, after)) found.push_back(entry->path());
+  }
+  for (const fs::path& path : found) fs::remove_all(path, failed);
+}
+
+}  // namespace exitance

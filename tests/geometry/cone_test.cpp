@@ -1,0 +1,258 @@
+#include "geometry/cone.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "geometry/extended.h"
+#include "src/stress/placement.h"
+#include "tests/geometry/rational_points.h"
+
+namespace exitance {
+namespace {
+
+/// Exactly.
+template <class Real>
+Q rational(Real value) {
+  Q sum(0);
+  for (; value != 0; value -= Real(static_cast<double>(value))) sum += Q(static_cast<double>(value));
+  return sum;
+}
+
+template <class Real>
+Point rational(const Vec<Real>& v) {
+  return {rational(v.x), rational(v.y), rational(v.z)};
+}
+
+Point cross(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Q square(const Point& v) {
+  return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+}
+
+template <class Real>
+class ConeOf : public testing::Test {};
+using Numbers = testing::Types<double, long double, Extended>;
+TYPED_TEST_SUITE(ConeOf, Numbers);
+
+Vec3 drawn(Random& random, double size) {
+  return {random.real(-size, size), random.real(-size, size), random.real(-size, size)};
+}
+
+/// Sides err by no more than they say, and the angle along an edge grows as fast as they say and no faster.
+TYPED_TEST(ConeOf, CornersHasSidesWithinTheirBounds) {
+  Random random("cones");
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 x = drawn(random, 1);
+    const std::array<Vec3, 3> corners{drawn(random, 1), drawn(random, 9), drawn(random, 1)};
+    const std::array<const Vec3*, 3> loop{&corners[0], &corners[1], &corners[2]};
+    const int turn = random.whole(0, 1) == 0 ? 1 : -1;
+    Cone<TypeParam> cone;
+    set_cone<TypeParam>(cone, x, loop, turn);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3 &from = corners[c], &to = corners[(c + 1) % 3];
+      Point m = cross(exact(from) - exact(x), exact(to) - exact(x));
+      for (Q& component : m) component *= turn;
+      const ConeSide<TypeParam>& side = cone.sides[c];
+      const Q error = rational(side.error);
+      ASSERT_LE(square(rational(side.m) - m), error * error);
+      const Vec3 w = from - x, e = to - from;
+      const double t = std::clamp(-dot(w, e) / dot(e, e), 0.0, 1.0);
+      const double fastest = norm(exitance::cross(w, e)) / dot(w + t * e, w + t * e);
+      ASSERT_NEAR(static_cast<double>(side.sweep), fastest, 1e-9 * fastest) << t;
+    }
+  }
+}
+
+/// The same of points that stand for where they drop onto a plane, along each axis.
+TYPED_TEST(ConeOf, DroppedCornersHasSidesWithinTheirBounds) {
+  Random random("dropped cones");
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 x = drawn(random, 1);
+    std::array<Vec3, 3> s{drawn(random, 1), drawn(random, 1), drawn(random, 1)};
+    ViewFrame frame{x, {0, 0, 1}, {&s[0], &s[1], &s[2]}};
+    const Vec3 n = exitance::cross(s[1] - s[0], s[2] - s[0]);
+    while (std::fabs(n[frame.axis]) < std::max({std::fabs(n.x), std::fabs(n.y), std::fabs(n.z)})) ++frame.axis;
+    frame.axis_sign = n[frame.axis] > 0 ? 1 : -1;
+    const auto S = [&](const Point& p) {
+      return determinant(exact(s[1]) - exact(s[0]), exact(s[2]) - exact(s[0]), p - exact(s[0]));
+    };
+    const auto axis = static_cast<std::size_t>(frame.axis);
+    std::array<Vec3, 3> corners;
+    std::array<Point, 3> dropped;
+    std::array<double, 3> heights{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      corners[c] = s[0] + random.real(0, 1) * (s[1] - s[0]) + random.real(0, 1) * (s[2] - s[0]);
+      corners[c][frame.axis] += random.real(-1e-3, 1e-3);
+      Point above = exact(corners[c]);
+      above[axis] += 1;
+      const Q by = S(exact(corners[c])) / (S(above) - S(exact(corners[c])));
+      dropped[c] = exact(corners[c]);
+      dropped[c][axis] -= by;
+      heights[c] = 1.0001 * std::fabs(CGAL::to_double(by));
+    }
+    const Drop drop{frame, heights};
+    const std::array<const Vec3*, 3> loop{&corners[0], &corners[1], &corners[2]};
+    Cone<TypeParam> cone;
+    set_cone<TypeParam>(cone, x, loop, 1, &drop);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Point w = dropped[c] - exact(x), m = cross(w, dropped[(c + 1) % 3] - exact(x));
+      const Q error = rational(cone.sides[c].error), length = rational(cone.corners.length(c)),
+              corner_error = rational(cone.corners.error(c)) + rational(TypeParam(2 * roundoff<TypeParam>())) * length;
+      ASSERT_LE(square(rational(cone.sides[c].m) - m), error * error) << k;
+      ASSERT_LE(square(rational(cone.corners.w(c)) - w), corner_error * corner_error) << k;
+      // In more digits little is left of what was dropped.
+      if (!std::is_same_v<TypeParam, double>) {
+        ASSERT_LE(error * error, Q(1e-24) * square(m) + Q(1e-24)) << k;
+      }
+    }
+  }
+}
+
+/// A corner in the very point of view lies in every plane through it, whatever the bounds say.
+TYPED_TEST(ConeOf, ACornerAtThePointOfView) {
+  const Vec3 x{1, 2, 3}, p{2, 2, 4}, q{1, 5, 4};
+  const std::array<const Vec3*, 3> loop{&x, &p, &q};
+  Cone<TypeParam> cone;
+  set_cone<TypeParam>(cone, x, loop, 1);
+  const ViewFrame frame{x, {0, 0, 1}, {}};
+  StageCounts counts;
+  const ConeSide<TypeParam>& far_side = cone.sides[1];
+  EXPECT_EQ(value_at(far_side, cone.corners, 0, frame, counts).sign, 0);
+  Row<TypeParam> row;
+  row.fill(far_side, cone.corners, frame, counts);
+  EXPECT_EQ(row.sign(0), 0);
+  EXPECT_FALSE(row.any_positive());
+  EXPECT_FALSE(row.any_negative());
+  SideBlocks<TypeParam> sides;
+  sides.set(std::span(&far_side, 1));
+  Columns<TypeParam> columns;
+  int asked = 0;
+  columns.each(sides, cone.corners, cone.sides[0], frame, counts, [&](const auto&, const auto& from, const auto& to) {
+    EXPECT_EQ(from.sign, 0);
+    EXPECT_EQ(to.sign, 0);
+    ++asked;
+    return true;
+  });
+  EXPECT_EQ(asked, 1);
+}
+
+TYPED_TEST(ConeOf, AValueThatUnderflowsKeepsItsSign) {
+  const Vec3 x, p{1e-200, 0, 0}, q{0, 1e-200, 0}, above{0, 0, 1e-200}, beside{1e-200, 1e-200, 0};
+  const std::array<const Vec3*, 2> loop{&p, &q};
+  Cone<TypeParam> cone;
+  set_cone<TypeParam>(cone, x, loop, 1);
+  const ViewFrame frame{x, {0, 0, 1}, {}};
+  StageCounts counts;
+  const auto value_of = [&](const Vec3& v) {
+    return refined_value_at(cone.sides[0], {ViewPoint::Kind::vertex, false, 0, &v, nullptr}, frame, counts);
+  };
+  EXPECT_EQ(value_of(above).sign, 1);
+  EXPECT_GT(value_of(above).value, 0);
+  EXPECT_EQ(value_of(above).error, 1);
+  EXPECT_EQ(value_of(beside).sign, 0);
+  EXPECT_EQ(value_of(beside).value, 0);
+  EXPECT_EQ(value_of(beside).error, 0);
+}
+
+TYPED_TEST(ConeOf, APointThatDropsIsNoEndOfAnEdgeThatDoesNot) {
+  const Vec3 x, p{1, 0, 0}, q{0, 1, 0}, v{0, 0, 1};
+  const std::array<const Vec3*, 2> loop{&p, &q};
+  Cone<TypeParam> cone;
+  set_cone<TypeParam>(cone, x, loop, 1);
+  const auto is_end = [&](const Vec3& at, bool dropped) {
+    return is_end_of({ViewPoint::Kind::vertex, dropped, 0, &at, nullptr}, cone.sides[0]);
+  };
+  EXPECT_TRUE(is_end(p, false));
+  EXPECT_TRUE(is_end(q, false));
+  EXPECT_FALSE(is_end(v, false));
+  EXPECT_FALSE(is_end(p, true));
+  EXPECT_FALSE(is_end_of({ViewPoint::Kind::at_horizon, false, 1, &p, &v}, cone.sides[0]));
+}
+
+Signed<double> signed_value(double value, double error = 0) {
+  return {value, error, value > 0 ? 1 : value < 0 ? -1 : 0};
+}
+
+/// What is left of a stretch where the function from a to b is positive, when nothing has to be known better.
+Stretch<double> narrowed(Signed<double> a, Signed<double> b, Stretch<double> stretch = {}) {
+  narrow(stretch, a, b, 0.0, [](auto&, auto&, double) { FAIL() << "it is known well enough"; });
+  return stretch;
+}
+
+TEST(Narrow, LeavesWhatIsPositive) {
+  for (const double a : {-1.0, 0.0, 3.0}) {
+    for (const double b : {-1.0, 0.0, 1.0}) {
+      const Stretch<double> s = narrowed(signed_value(a), signed_value(b));
+      EXPECT_EQ(s.empty, a <= 0 && b <= 0) << a << " " << b;
+      EXPECT_EQ(s.narrow, a * b < 0) << a << " " << b;
+      EXPECT_NEAR(s.lo, a < 0 && b > 0 ? 0.5 : 0, s.lo_error) << a << " " << b;
+      EXPECT_NEAR(s.hi, a > 0 && b < 0 ? 0.75 : 1, s.hi_error) << a << " " << b;
+      EXPECT_LE(std::max(s.lo_error, s.hi_error), 1e-15);
+    }
+  }
+}
+
+TEST(Narrow, KnowsTheCrossingAsWellAsItsEnds) {
+  Random random("narrow");
+  for (int k = 0; k < 1000; ++k) {
+    const double a = random.real(0.1, 1), b = -random.real(0.1, 1), error = random.real(0, 1e-3);
+    const Stretch<double> falling = narrowed(signed_value(a, error), signed_value(b, error)),
+                          rising = narrowed(signed_value(b, error), signed_value(a, error));
+    for (const double off_a : {-error, error}) {
+      for (const double off_b : {-error, error}) {
+        const double t = (a + off_a) / (a + off_a - b - off_b);
+        EXPECT_LE(std::fabs(falling.hi - t), falling.hi_error);
+        EXPECT_LE(std::fabs(rising.lo - (1 - t)), rising.lo_error);
+      }
+    }
+    EXPECT_LE(falling.hi_error, 1.1 * error / (a - b) + 1e-15) << "and no worse";
+  }
+  EXPECT_GE(narrowed(signed_value(1e-3, 1e-3), signed_value(-1e-3, 1e-3)).hi_error, 1) << "all is open";
+}
+
+TEST(Narrow, KeepsTheTighterEndAndTheLargerErrorOfWhatMayBeTheEnd) {
+  const Stretch<double> half{0.25, 0.5, 1e-4, 1e-4, false, false};
+  const auto at = [&](double t, double error, bool falls) {
+    const Signed<double> a = signed_value(falls ? t : -t, error), b = signed_value(falls ? t - 1 : 1 - t, error);
+    return narrowed(a, b, half);
+  };
+  EXPECT_FALSE(at(0.75, 1e-9, true).narrow);
+  EXPECT_EQ(at(0.75, 1e-9, true).hi, 0.5);
+  EXPECT_EQ(at(0.75, 1e-9, true).hi_error, 1e-4);
+  EXPECT_FALSE(at(0.125, 1e-9, false).narrow);
+  EXPECT_EQ(at(0.125, 1e-9, false).lo, 0.25);
+  EXPECT_NEAR(at(0.375, 1e-9, true).hi, 0.375, 1e-8);
+  EXPECT_EQ(at(0.375, 1e-9, true).hi_error, 1e-4);
+  EXPECT_NEAR(at(0.375, 1e-9, false).lo, 0.375, 1e-8);
+  EXPECT_EQ(at(0.375, 1e-9, false).lo_error, 1e-4);
+  // It may be either: both ends' errors count.
+  EXPECT_TRUE(at(0.501, 1e-3, true).narrow);
+  EXPECT_EQ(at(0.501, 1e-3, true).hi, 0.5);
+  EXPECT_GT(at(0.501, 1e-3, true).hi_error, 9e-4);
+  EXPECT_TRUE(at(0.249, 1e-3, false).narrow);
+  EXPECT_EQ(at(0.249, 1e-3, false).lo, 0.25);
+  EXPECT_GT(at(0.249, 1e-3, false).lo_error, 9e-4);
+}
+
+TEST(Narrow, AsksForWhatItNeedsAndNoMore) {
+  const auto asked = [](double weight, double after_first) {
+    std::vector<double> accuracies;
+    Stretch<double> stretch;
+    narrow(stretch, signed_value(1, 1e-3), signed_value(-1, 1e-3), weight,
+           [&](Signed<double>& a, Signed<double>& b, double accuracy) {
+             accuracies.push_back(accuracy);
+             a.error = b.error = after_first;
+           });
+    return accuracies;
+  };
+  EXPECT_TRUE(asked(1, 0).empty());
+  EXPECT_EQ(asked(1e4, 1e-9), std::vector<double>{0.5});
+  EXPECT_EQ(asked(1e4, 1e-3), (std::vector<double>{0.5, 0x1p-44}));
+}
+
+}  // namespace
+}  // namespace exitance
