@@ -350,15 +350,15 @@ TEST_F(ResumeTest, NotFromDamagedPartsOrThoseOfAnotherRun) {
   EXPECT_EQ(Running(command("box.h5")).end_when(saved(scratch / "box.h5.parts", 3), SIGKILL), -1);
   const Outcome other = run(command("box.h5", "--tolerance 1e-11"));
   EXPECT_EQ(other.code, 3);
-  EXPECT_THAT(other.err, AllOf(HasSubstr("box.h5.parts/rows-000001.h5"), HasSubstr("tolerance 1e-10"),
+  EXPECT_THAT(other.err, AllOf(HasSubstr("box.h5.parts/part-000001.h5"), HasSubstr("tolerance 1e-10"),
                                HasSubstr("another run"), HasSubstr("remove")));
-  const auto part = scratch / "box.h5.parts" / "rows-000002.h5";
+  const auto part = scratch / "box.h5.parts" / "part-000002.h5";
   std::string bytes = contents(part);
   for (std::size_t k = bytes.size() / 4; k < bytes.size() / 2; ++k) bytes[k] = static_cast<char>(bytes[k] ^ 0x55);
   std::ofstream(part, std::ios::binary) << bytes;
   const Outcome damaged = run(command("box.h5"));
   EXPECT_EQ(damaged.code, 3);
-  EXPECT_THAT(damaged.err, AllOf(HasSubstr("rows-000002.h5"), HasSubstr("remove it, and its rows are computed again")));
+  EXPECT_THAT(damaged.err, AllOf(HasSubstr("part-000002.h5"), HasSubstr("remove it, and its rows are computed again")));
   EXPECT_FALSE(exists(scratch / "box.h5"));
   std::filesystem::remove(part);
   EXPECT_EQ(run(command("box.h5")).code, 0);
