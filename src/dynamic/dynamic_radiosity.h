@@ -104,8 +104,7 @@ class DynamicRadiosity {
   /// Redistributes what a patch shot in an older version. REQUIRES: change < pending_changes().
   DynamicShot redistribute(std::size_t change, std::uint32_t patch, VersionDifference::Search search);
 
-  /// Whether a patch of the object that was changed last can still gather what is to be redistributed to it: 0 when
-  /// none can, else how many.
+  /// How many patches of the object that was changed last can still gather what is to be redistributed to them.
   std::uint32_t patches_to_gather() const;
   /// The next of them does. REQUIRES: patches_to_gather() > 0.
   DynamicShot gather();

@@ -52,9 +52,8 @@
 //   operation = "move"              # add, remove, move, reshape, change, select, deselect (edit.h)
 //   scale, rotate, translate        # add, move: where it stands, as in [[object]] and from what stands there, about
 //   pivot = [x, y, z]               # this point; the origin unless given
-//   mesh, polygons or box, …        # reshape: what it becomes, with the keys of [[object]]; what these leave open it
-//   is
-//                                   # made of as before
+//   mesh, polygons or box, …        # reshape: what it becomes, with the keys of [[object]]; made of what it was made
+//                                   # of, where these do not say
 //   material = "red"                # change: of all its surfaces
 //   materials = {wood = "red"}      # change: of those of some materials
 //

@@ -205,7 +205,10 @@ TEST_P(Ladder, ValuesThroughAPointAreWithinTheirBounds) {
     // The edge cd and the point v in a plane with x, as aimed; S and T two planes.
     PlanesThroughAPoint q;
     const auto [x, c, d, v] = aimed(GetParam(), random);
-    q.x = x, q.c = c, q.d = d, q.v = v;
+    q.x = x;
+    q.c = c;
+    q.d = d;
+    q.v = v;
     q.normal = cross(c - x, d - x);
     const auto corner = [&] { return Vec3{random.real(-9, 9), random.real(-9, 9), random.real(-9, 9)}; };
     q.s = {corner(), corner(), corner()};
