@@ -98,7 +98,7 @@ class Dynamic {
         ->capture_default_str();
     verb.add_option("--budget-shots", budget_shots_, "Most shots a frame after the first; 0: none")
         ->check(whole_number_between(0));
-    verb.add_option("--budget-ms", budget_ms_, "Milliseconds a frame after the first; 0: none")
+    verb.add_option("--budget-ms", budget_ms_, "Milliseconds of work a frame after the first, beside its edits themselves; 0: none")
         ->check(number_between(0));
     verb.add_option("--replay", replay_, "frames.json of an earlier run whose numbers of shots to repeat");
     verb.add_flag(
@@ -130,12 +130,10 @@ class Dynamic {
     verb.footer(
         "frames.json is a list: frame 0 is the scene before the first event, each other one follows the events of one\n"
         "time. error and error_worst_1_percent are eq. 7 of George et al. (1990) over elements, against the converged\n"
-        "solution of that frame; null where there is no reference. They are relative to the radiosity that the "
-        "elements\n"
-        "should have: where those that change most go dark, as in a new shadow, error_worst_1_percent can exceed 1.\n"
-        "error_bound is null while a change is in the log and once --no-log has forgotten one: finished then says "
-        "that\n"
-        "nothing is left to do, not that B is right.\n"
+        "solution of that frame; null where there is no reference. They are relative to the radiosity that the\n"
+        "elements should have: where those that change most go dark, as in a new shadow, error_worst_1_percent can\n"
+        "exceed 1. error_bound is null while a change is in the log and once --no-log has forgotten one: finished then\n"
+        "says that nothing is left to do, not that B is right. seconds are wall clock, edits included.\n"
         "Each frame is written when it is done; Ctrl-C ends with those so far, exit code 4.\n"
         "Methods by links link all pairs of patches: clusters of patches are for solve --method hierarchical.");
   }
@@ -258,11 +256,13 @@ class Dynamic {
   }
 
   std::string apply(const Event& event, EditSession& session, std::optional<FrameReferences>& references) {
+    const auto start = std::chrono::steady_clock::now();
     try {
       session.apply(event.edit);
     } catch (const InvalidEdit& wrong) {
       throw InputError(path_, event.line, wrong.what());
     }
+    edit_seconds_ += seconds_since(start);
     if (references) references->apply(event.edit);
     moved_[event.edit.object] = event.line;
     return fmt::format("{} {}", name_of(event.edit.operation), session.scene().scene().objects[event.edit.object].name);
@@ -283,6 +283,7 @@ class Dynamic {
              const std::vector<std::string>& edits) {
     last_ = !edits.empty() && edits.front() == "work off";
     const SessionWork work = session.work(budget());
+    const double edit_seconds = std::exchange(edit_seconds_, 0), seconds = edit_seconds + work.seconds;
     const DynamicRadiosity& state = session.solution();
     // Only now is an object that is selected where it is shown.
     for (const auto& [object, line] : std::exchange(moved_, {})) {
@@ -304,7 +305,8 @@ class Dynamic {
     frame["time"] = time;
     frame["edits"] = edits;
     frame["method"] = method_;
-    frame["seconds"] = work.seconds;
+    frame["seconds"] = seconds;
+    frame["seconds_edits"] = edit_seconds;
     frame["shots"] = work.shots();
     frame["propagation_shots"] = work.propagations;
     frame["redistribution_shots"] = work.redistributions;
@@ -338,7 +340,7 @@ class Dynamic {
     frame["unit"] = given.scene.unit;
     if (images_) draw(given, session, time, B);
     summary_ += fmt::format(
-        "frame {:3}  {:>9.3f} s  {:5} + {:5} shots  error {}  of the 1 % {}  {}\n", frames_.size(), work.seconds,
+        "frame {:3}  {:>9.3f} s  {:5} + {:5} shots  error {}  of the 1 % {}  {}\n", frames_.size(), seconds,
         work.redistributions + work.gatherings, work.propagations, error ? fmt::format("{:.3g}", error->all) : "-",
         error ? fmt::format("{:.3g}", error->worst_1_percent) : "-", fmt::format("{}", fmt::join(edits, ", ")));
     frames_.push_back(std::move(frame));
@@ -369,6 +371,7 @@ class Dynamic {
   Clock::time_point start_;
   std::optional<ResultFolder> results_;
   std::optional<ReferenceStore> store_;
+  double edit_seconds_ = 0;                       // of this frame's edits
   std::map<std::uint32_t, std::uint32_t> moved_;  // objects of this frame's edits, and the lines of the last of these
   std::vector<std::uint64_t> replayed_;
   std::vector<double> reference_before_;
