@@ -217,7 +217,9 @@ class Dynamic {
   void finish() {
     print_results(json_ ? frames_.dump(1) + '\n' : summary_);
     if (partial_) {
-      print_message(fmt::format("stopped in frame {}; the partial result was saved", frames_.size() - 1));
+      print_message(frames_.empty() ? "stopped before the first frame was done; nothing was saved"
+                                    : fmt::format("stopped after {} frame{}; the partial result was saved",
+                                                  frames_.size(), frames_.size() == 1 ? "" : "s"));
       throw CLI::RuntimeError(limit_reached);
     }
   }

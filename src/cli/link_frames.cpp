@@ -36,9 +36,10 @@ class Frames {
 
   LinksEnd follow() {
     const std::vector<Event>& events = given_.events;
-    const LinkUpdate built = links_.build(options_.stop);
+    const LinkUpdate built = links_.build(interruption(false));
     add(events.empty() ? 0 : std::min(0.0, events.front().time), {}, built);
-    bool left = false, stopped = built.stopped;  // something, by the last update; any that built everything
+    bool left = false;  // something, by the last update
+    stopped_ = stopped_ || built.stopped;
     for (std::size_t next = 0; next < events.size() && !(options_.stop && options_.stop());) {
       const double time = events[next].time;
       std::vector<Edit> edits;
@@ -54,14 +55,14 @@ class Frames {
       for (const auto& [object, line] : lines) warn(object, line);
       add(time, names, update);
       left = update.pairs_left > 0;
-      stopped = stopped || update.stopped;
+      stopped_ = stopped_ || update.stopped;
     }
     if (left && options_.work_off && !(options_.stop && options_.stop())) {
       const LinkUpdate rest = links_.work_off(interruption(false));
       add(events.back().time, {"work off"}, rest);
       left = rest.pairs_left > 0;
     }
-    const bool unfinished = stopped || (left && !options_.budget);
+    const bool unfinished = stopped_ || (left && !options_.budget);
     return unfinished ? LinksEnd::unfinished : LinksEnd::finished;
   }
 
@@ -91,9 +92,13 @@ class Frames {
     const std::span<const double> B = links_.radiosity().B();
     std::optional<ConvergenceError> error;
     if (options_.references) {
-      const std::vector<double> reference = links_.converged(options_.abandon);
-      error = link_error(links_.tree(), elements, links_.radiosity().bands(), reference, reference_before_, B);
-      reference_before_ = reference;
+      try {
+        const std::vector<double> reference = links_.converged(options_.abandon);
+        error = link_error(links_.tree(), elements, links_.radiosity().bands(), reference, reference_before_, B);
+        reference_before_ = reference;
+      } catch (const Abandoned&) {  // the frame itself is whole
+        stopped_ = true;
+      }
     }
     const SightWork& sight = update.work.sight;
     const LinkCounts counts = links_.links().count(links_.tree(), moves_);
@@ -166,6 +171,7 @@ class Frames {
   std::vector<std::uint8_t> moves_;
   std::string name_;
   std::vector<double> reference_before_;
+  bool stopped_ = false;  ///< what built everything, or the search for a reference
   LinkFrames result_{Json::array(), {}};
 };
 

@@ -30,14 +30,14 @@ struct LinkFrameOptions {
   bool images = true;              ///< whether pictures and VTP files are written
   std::uint32_t image_size = 800;  ///< of the pictures, in pixels
   std::function<bool()> stop;      ///< asked between frames and within them, by any thread
-  std::function<bool()> abandon;   ///< likewise; the frame that is being made is dropped then
+  std::function<bool()> abandon;   ///< likewise; the frame that is being made is dropped then, or only its error
   std::function<void(const LinkFrames&)> finished;  ///< told after each frame what there is so far
 };
 
 enum class LinksEnd : std::uint8_t {
   finished,
   unfinished  ///< building ended before all links were refined, updates left something that no budget said, or the
-              ///< last was abandoned
+              ///< last, or the search for its error, was abandoned
 };
 
 /// Follows the scene through its events; frame 0 is built before the first. Warns of objects that pass through others

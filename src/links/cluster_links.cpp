@@ -59,7 +59,7 @@ ClusterLinks::Refinement ClusterLinks::refine(std::span<const double> luminance,
       const std::uint32_t r = clusters_.roots_of(clusters[c]).front();
       const Root& root = tree_->root(r);
       most_[c] = *std::ranges::max_element(luminance.subspan(root.node_first, root.node_count));
-      emitted_[c] = tree_->node(root.node_first).area * luminance[root.node_first];  // at least: some may be covered
+      emitted_[c] = clusters_.place(r).area * luminance[root.node_first];  // of what is open, as both are
     } else {
       const std::uint32_t a = clusters[c].first_child, b = a + 1;
       most_[c] = std::max(most_[a], most_[b]);

@@ -73,7 +73,7 @@ class ClusterLinks {
   PatchClusters clusters_;
   std::vector<ClusterLink> links_;      ///< by destination
   std::vector<std::size_t> first_;      ///< by cluster, and the end: its links as a destination
-  std::vector<double> most_, emitted_;  ///< by cluster: the largest luminance, and Σ A Y
+  std::vector<double> most_, emitted_;  ///< by cluster: the largest luminance, and Σ A Y of what is open
 };
 
 }  // namespace exitance

@@ -97,7 +97,8 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
     throw InputError(scene.name, 0, "no surface has an area; there is nothing to solve");
   }
   LinkedRadiosity links(scene, options.links);
-  HierarchicalSolution result{SceneSolution(make_soup(scene)), links.build(options.stop), {}, 0, 0, 0, links.options()};
+  HierarchicalSolution result{
+      SceneSolution(make_soup(scene)), links.build({options.stop, LinkOrder::any, {}}), {}, 0, 0, 0, links.options()};
   result.links = links.links().count(links.tree(), moves);
   result.clusters = links.cluster_links().clusters().clusters().size();
   result.cluster_links = links.cluster_links().links().size();
@@ -113,13 +114,14 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
   const std::vector<std::uint32_t> elements = links.elements();
   s.patches.B.resize(s.mesh.patches.size() * bands);
   s.patches.H.resize(s.patches.B.size());
-  std::vector<double> patch_row_sum(s.mesh.patches.size()), patch_open(s.mesh.patches.size());
   const std::vector<double> row_sum = row_sums(links.links(), links.cluster_links(), links.tree());
+  std::vector<double> open_area, open_row_sum, rho, E, B, H;  // by element, of what is open
   // A leaf below an element receives what the element does, as far as it is open.
   for (std::size_t e = 0; e < elements.size(); ++e) {
     std::uint32_t leaf = elements[e];
     while (links.tree().node(leaf).has_children()) leaf = links.tree().node(leaf).first_child;
-    const double open = links.tree().node(elements[e]).open_area / links.tree().node(elements[e]).area;
+    const Node& node = links.tree().node(elements[e]);
+    const double open = node.open_area / node.area;
     const std::uint32_t p = s.mesh.elements[e].patch;
     const double share = s.mesh.elements[e].area / s.mesh.patches[p].area;
     for (std::uint32_t b = 0; b < bands; ++b) {
@@ -127,14 +129,14 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
       s.element_B.push_back(links.radiosity().whole_B(elements[e], b));
       s.patches.H[std::size_t{p} * bands + b] += share * s.element_H.back();
       s.patches.B[std::size_t{p} * bands + b] += share * s.element_B.back();
+      rho.push_back(links.radiosity().rho()[std::size_t{node.root} * bands + b]);
+      E.push_back(links.radiosity().E()[std::size_t{node.root} * bands + b]);
+      B.push_back(links.radiosity().B()[std::size_t{elements[e]} * bands + b]);
+      H.push_back(links.radiosity().leaf_H(leaf)[b]);
     }
     s.element_row_sum.push_back(open * row_sum[leaf]);
-    patch_row_sum[p] += share * s.element_row_sum.back();
-    patch_open[p] += share * open;
-  }
-  // What leaves a patch leaves its open part.
-  for (std::size_t p = 0; p < patch_open.size(); ++p) {
-    if (patch_open[p] > 0) patch_row_sum[p] /= patch_open[p];
+    open_area.push_back(node.open_area);
+    open_row_sum.push_back(row_sum[leaf]);
   }
   s.patches.iterations = result.update.exchange.iterations;
   s.patches.residual = result.update.exchange.residual;
@@ -151,9 +153,7 @@ HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOption
   for (std::size_t k = 0; k < count; ++k) sample.push_back(n * (2 * k + 1) / (2 * count));
   s.statistics = point_row_statistics(visibility, sample);
   s.measured_points = count;
-  s.energy_balance_defect = energy_balance(patch_areas(s.discretisation), patch_row_sum, s.discretisation.rho,
-                                           s.discretisation.E, s.patches.B, s.patches.H, bands)
-                                .worst_defect;
+  s.energy_balance_defect = energy_balance(open_area, open_row_sum, rho, E, B, H, bands).worst_defect;
   std::mt19937_64 random(options.seed);
   std::size_t pairs = 0;
   for (std::size_t draw = 0; draw < kDraws && pairs < kPairs; ++draw) {

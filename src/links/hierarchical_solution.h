@@ -23,8 +23,9 @@ struct HierarchicalSolution {
 
 /// Solves the scene; values of elements and patches are means over all of them, what is covered included. moves: by
 /// object, what counts as dynamic in the counts. Closure, covered points and pairs are measured at up to 256 elements.
-/// Energy balance and reciprocity are those of links and patches with their quadrature and thresholds. The same bits
-/// for any number of threads. Throws what LinkedRadiosity and its tree throw, InputError for a scene in which no
+/// Energy balance and reciprocity are those of links and patches with their quadrature and thresholds; the balance is
+/// that of the elements' open area, as nothing leaves or reaches what is covered. The same bits for any number of
+/// threads. Throws what LinkedRadiosity and its tree throw, InputError for a scene in which no
 /// surface has an area.
 HierarchicalSolution solve_by_links(const Scene& scene, const HierarchicalOptions& options,
                                     std::span<const std::uint8_t> moves);

@@ -57,10 +57,6 @@ bool Lid::covers(const Vec3& point) const {
   return std::ranges::all_of(sides, [&](const HalfSpace& side) { return value(side, point) > 0; });
 }
 
-bool operator==(const Lid& a, const Lid& b) {
-  return std::ranges::equal(a.sides, b.sides, {}, key, key);
-}
-
 bool operator<(const Lid& a, const Lid& b) {
   return std::ranges::lexicographical_compare(a.sides, b.sides, {}, key, key);
 }

@@ -19,7 +19,6 @@ struct Lid {
   /// Whether a point of the plane lies under it; decided in double precision.
   bool covers(const Vec3& point) const;
 
-  friend bool operator==(const Lid& a, const Lid& b);
   friend bool operator<(const Lid& a, const Lid& b);
 };
 
@@ -31,7 +30,7 @@ std::vector<Lid> lids_on(const PolygonSoup& soup, const Contacts& contacts, std:
 /// 2^-30 of it is missing to that. Lids may overlap each other.
 double open_area(std::span<const Vec3> loop, double area, std::span<const Lid> lids);
 
-/// Whether a lid covers more of the polygon than a 2^-30.
+/// Whether a lid covers more than 2^-30 of the polygon's area [m²].
 bool overlaps(std::span<const Vec3> loop, double area, const Lid& lid);
 
 }  // namespace exitance

@@ -5,8 +5,8 @@
 #include <functional>
 #include <limits>
 #include <span>
-#include <stdexcept>
 
+#include "src/links/abandon.h"
 #include "src/links/link_index.h"
 #include "src/links/link_sight.h"
 
@@ -50,15 +50,8 @@ struct LinkTask {
   /// more. Of others, where pairs may be left pending, asked now and then: whether what has not been looked at is left.
   std::function<bool()> stop;
   LinkOrder order = LinkOrder::importance;  ///< where pairs may be left pending
-  /// Asked by any thread before each receiving patch, while it is sought what there is to do and while that is done:
-  /// whether to throw Abandoned.
-  std::function<bool()> abandon;
-};
-
-/// Thrown where an update is not to go on and nothing of it is to stay.
-class Abandoned : public std::runtime_error {
- public:
-  Abandoned() : std::runtime_error("the update was abandoned") {}
+  /// Asked by any thread before each receiving patch, while it is sought what there is to do and while that is done.
+  Abandon abandon;
 };
 
 struct LinkWork {

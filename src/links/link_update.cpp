@@ -102,16 +102,12 @@ class Update {
 
   using Workers = tbb::enumerable_thread_specific<std::unique_ptr<PairUpdate>>;
 
-  void go_on() const {
-    if (task_.abandon && task_.abandon()) throw Abandoned();
-  }
-
   template <class Do>
   void for_each_receiver(const Do& act) {
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(links_.roots()), 1),
                       [&](const auto& range) {
                         for (std::uint32_t r = range.begin(); r < range.end(); ++r) {
-                          go_on();
+                          go_on(task_.abandon);
                           act(r, *workers_.local());
                         }
                       });
@@ -216,7 +212,7 @@ class Update {
     }
     first.push_back(sorted.size());
     tbb::parallel_for(std::size_t{0}, first.size() - 1, [&](std::size_t k) {
-      go_on();
+      go_on(task_.abandon);
       work(sorted[first[k]].receiver, std::span(sources).subspan(first[k], first[k + 1] - first[k]), *workers_.local());
     });
   }

@@ -116,10 +116,6 @@ void LinkedRadiosity::shoot(LinkUpdate& update, const Abandon& abandon) {
   update.seconds_exchange += watch.lap();
 }
 
-LinkUpdate LinkedRadiosity::build(const std::function<bool()>& stop) {
-  return build(LinkInterruption{stop, LinkOrder::any, {}});
-}
-
 LinkUpdate LinkedRadiosity::build(const LinkInterruption& interruption) {
   const std::function<bool()>& stop = interruption.stop;
   RunClock whole;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "src/links/abandon.h"
 #include "src/links/link_update.h"
 #include "src/scene/edit.h"
 #include "src/solve/convergence_error.h"
@@ -62,7 +63,7 @@ struct LinkInterruption {
   std::function<bool()> stop;
   LinkOrder order = LinkOrder::importance;
   /// Asked throughout, between patches and sweeps, by any thread: once it is true the update throws Abandoned.
-  std::function<bool()> abandon;
+  Abandon abandon;
 };
 
 class LinkedRadiosity {
@@ -81,9 +82,10 @@ class LinkedRadiosity {
   const LinkOptions& options() const { return options_; }
 
   /// From nothing: links are refined and energy is exchanged in turn, until a round refines none: B F of none was above
-  /// eps2 then. `stop`, asked by any thread, or most_rounds end the refinement early (LinkUpdate::stopped). Throws
-  /// LimitError when the links would not fit in mesh.memory_limit; it is to be built again then.
-  LinkUpdate build(const std::function<bool()>& stop = {});
+  /// eps2 then. `stop`, asked by any thread, or most_rounds end the refinement early (LinkUpdate::stopped); the order
+  /// does not count. Throws LimitError when the links would not fit in mesh.memory_limit, and Abandoned; it is to be
+  /// built again then.
+  LinkUpdate build(const LinkInterruption& interruption = {});
 
   /// Edits that happen at once. What an interrupted update leaves keeps its links as they were, until work_off, which
   /// leaves the links that the update would have left, or marked stale until later updates. Rebuilding ends early as
@@ -127,7 +129,6 @@ class LinkedRadiosity {
   };
 
   LinkTask task(LinkScope scope) const;
-  LinkUpdate build(const LinkInterruption& interruption);
   std::uint64_t bytes_left() const;
   template <class Work>
   LinkUpdate all_or_nothing(const Work& work);

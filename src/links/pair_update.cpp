@@ -51,11 +51,12 @@ double PairUpdate::most_energy(const Ends& ends) const {
 }
 
 /// Whether a link's energy can neither have been more than B_eps, nor be now. Where what covers the receiver has
-/// changed, another part of it counts than before, on which all that its form factor says may fall.
+/// changed, another part of it counts than before, of which the form factor says nothing, nor a ghost's of what its
+/// descendants may have.
 bool PairUpdate::is_insignificant(const Link& link) const {
-  const Node& to = tree_.node(link.destination);
-  const double concentrated = to.covered_anew && to.open_area > 0 ? to.area / to.open_area : 1;
-  return concentrated * link.energy < task_.B_eps;
+  if (link.energy >= task_.B_eps) return false;
+  if (!tree_.node(link.destination).covered_anew) return true;
+  return !link.ghost && most_energy({link.destination, link.source}) < task_.B_eps;
 }
 
 bool PairUpdate::wants_refinement(const Ends& ends, LinkCode code, double energy, bool blocked) const {
@@ -198,7 +199,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (link.open && !here.renewed) here.now = sight_.open();
     may_change = true;
   } else if (here.renewed) {
-    if (only_significant() && !renewed && link.energy < task_.B_eps) return leave_stale();
+    if (only_significant() && !renewed && is_insignificant(link)) return leave_stale();
     changed_ = true;
     if (!face_each_other(ends)) return;
     const double Y = task_.luminance[ends.source];

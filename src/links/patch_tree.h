@@ -73,7 +73,8 @@ class PatchTree {
                        std::span<const PolygonSoup::PolygonRange> polygons, std::uint32_t object);
 
   /// Finds what covers the nodes of a scene, once it was made and when all edits of its geometry have been followed:
-  /// exactly by clipping, of what lies exactly or but for rounding in their planes. Contacts are those of the soup.
+  /// by clipping, to 2^-30 of an area, of what lies in their planes exactly or but for rounding. Contacts are those of
+  /// the soup.
   void cover(const PolygonSoup& soup, const Contacts& contacts);
   /// The points by which a node receives: those of node_points that nothing covers, or where there are none of twice,
   /// four times … as many an edge, up to 20. Their weights sum to 1; none where nothing, or next to it, is open.

@@ -273,7 +273,7 @@ LinkExchange NodeRadiosity::gather(const LinkIndex& links, const ClusterLinks& c
   result.factor = std::numeric_limits<double>::infinity();
   double best = result.factor;
   while (result.iterations < most) {
-    if (abandon && abandon()) throw Abandoned();
+    go_on(abandon);
     if (!clusters.empty()) {
       clusters.gather(B_, bands_, of_clusters);
       if (bounding) clusters.gather(w_, 1, w_of_clusters);
@@ -335,7 +335,8 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, const A
     for (std::size_t n = first, last = n + tree_->root(r).node_count; n < last; ++n) {
       const Node& node = tree_->nodes()[n];
       if (weighs_anew_[r] == 0 && node.has_children()) continue;
-      for (std::uint32_t b = 0; b < bands_; ++b) sum += node.area * weights_[b] * std::fabs(unshot_[n * bands_ + b]);
+      for (std::uint32_t b = 0; b < bands_; ++b)
+        sum += node.open_area * weights_[b] * std::fabs(unshot_[n * bands_ + b]);
     }
     unshot[r] = sum;
   };
@@ -370,7 +371,7 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, const A
   });
   double brightest = 0;  // the most energy that there was: of a light that went out little stays
   for (std::uint64_t round = 0; round < most; ++round) {
-    if (abandon && abandon()) throw Abandoned();
+    go_on(abandon);
     double all = 0, left = 0, largest = 0;
     for (std::uint32_t r = 0; r < roots; ++r) {
       if (!tree_->root(r).present) continue;

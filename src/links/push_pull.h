@@ -3,13 +3,12 @@
 // Salzman and Aupperle, "A rapid hierarchical radiosity algorithm", SIGGRAPH 1991).
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "src/links/abandon.h"
 #include "src/links/cluster_links.h"
 #include "src/links/link_index.h"
-#include "src/links/link_task.h"
 #include "src/links/patch_tree.h"
 #include "src/scene/scene.h"
 
@@ -29,9 +28,6 @@ struct LinkExchange {
   bool converged = false;
   double factor = 0;  ///< of the bound: max w / (1 − d)
 };
-
-/// Asked before each sweep or round: whether to throw Abandoned, in the middle of an exchange.
-using Abandon = std::function<bool()>;
 
 /// B [W/m²] of every node and band at [node * bands + band]; of a leaf E + ρ H with H the sum of what its own links and
 /// those of the nodes above it bring, E where all of it is covered; of others the mean of the leaves, weighted by their
@@ -66,16 +62,16 @@ class NodeRadiosity {
   void change_materials(const EditedScene& scene, std::uint32_t object);
 
   /// Sweeps over all links, each of which gathers at all patches at once (Jacobi), until the error bound is within the
-  /// tolerance, or rounding, or `most` sweeps end it. In parallel; the same bits for any number of threads. What
-  /// clusters bring, patches receive evenly.
+  /// tolerance, or rounding, or `most` sweeps end it. `abandon` is asked before each. In parallel; the same bits for
+  /// any number of threads. What clusters bring, patches receive evenly.
   LinkExchange gather(const LinkIndex& links, const ClusterLinks& clusters, double tolerance,
                       const Abandon& abandon = {}, std::uint64_t most = kMostExchanges);
 
   /// [W/m²] what a link that changed brings more than before; to be pushed. Different receiving roots: any threads.
   void receive(std::uint32_t node, double transfer, std::uint32_t source);
-  /// Pushes what was received and shoots it on, the patches with the most unshot energy (A |ΔB|, luminance) first: in
-  /// rounds of those that have a tenth of the most, until no more than `share` of the energy that all patches had at
-  /// most is left or `most` rounds are done. Returns the rounds.
+  /// Pushes what was received and shoots it on, the patches with the most unshot energy (A |ΔB|, luminance, A what is
+  /// open) first: in rounds of those that have a tenth of the most, until no more than `share` of the energy that all
+  /// patches had at most is left or `most` rounds are done. `abandon` is asked before each. Returns the rounds.
   std::uint64_t shoot(const LinkIndex& links, double share, const Abandon& abandon = {},
                       std::uint64_t most = kMostExchanges);
 

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "tests/cli/program.h"
+#include "tests/cli/running.h"
 
 namespace exitance {
 namespace {
@@ -106,6 +107,16 @@ TEST(Links, UpdatesAreInterruptedAndGoOn) {
   EXPECT_EQ(frames[4]["edits"][0], "work off");
   EXPECT_EQ(frames[4]["pairs_left"], 0);
   EXPECT_LT(frames[4]["error"], 1e-5);
+}
+
+TEST(Links, InterruptedBeforeTheFirstFrameIsDoneLeaveNothing) {
+  const ScratchFolder scratch;
+  const std::filesystem::path to = scratch / "d", messages = scratch / "messages";
+  const std::string command =
+      "dynamic " + data("cube.toml") + " --method hvt --eps 1e-4 --min-area 1e-3 -o " + to.string();
+  EXPECT_EQ(Running(command, messages.string()).end_when([&] { return exists(to); }, SIGINT), 4);
+  EXPECT_EQ(contents(messages), "exitance: stopped before the first frame was done; nothing was saved\n");
+  EXPECT_FALSE(exists(to));
 }
 
 TEST(Links, WarnOfWhatPassesThroughWalls) {

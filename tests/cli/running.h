@@ -25,9 +25,10 @@ inline std::size_t files_with(const std::string& extension, const std::filesyste
 
 class Running {
  public:
-  explicit Running(const std::string& arguments) : child_(fork()) {
+  /// messages: a file for what it tells on stderr.
+  explicit Running(const std::string& arguments, const std::string& messages = "/dev/null") : child_(fork()) {
     if (child_ != 0) return;
-    const std::string command = "exec " EXITANCE_PROGRAM " " + arguments + " >/dev/null 2>&1 </dev/null";
+    const std::string command = "exec " EXITANCE_PROGRAM " " + arguments + " >/dev/null 2>" + messages + " </dev/null";
     execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
     _exit(127);
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "src/links/hierarchical_solution.h"
 #include "tests/links/linked_rooms.h"
 
 namespace exitance {
@@ -123,7 +124,7 @@ TEST(CoveredArea, IsFoundInARoomThatIsTurned) {
 }
 
 // All links join the smallest sub-patches, so that from each of their points all that is seen sums to 1: B = E / (1 −
-// ρ) wherever anything is open, and E where nothing is.
+// ρ) wherever anything is open, and E where nothing is. What is open absorbs what it emits.
 TEST(CoveredArea, IsLeftOutInAFurnace) {
   for (Case& c : cases()) {
     if (c.name == "box through the wall") continue;  // the inside of the box is no part of the room, nor is it covered
@@ -144,6 +145,9 @@ TEST(CoveredArea, IsLeftOutInAFurnace) {
       const double B = links.radiosity().B()[root.node_first];
       EXPECT_NEAR(B, links.tree().node(root.node_first).open_area > 0 ? 2 : 1, 1e-9);
     }
+    HierarchicalOptions solving;
+    solving.links = options;
+    EXPECT_LT(solve_by_links(c.scene, solving, {}).solution.energy_balance_defect.value(), 1e-9);
   }
 }
 
@@ -210,6 +214,49 @@ TEST(CoveredArea, IsFollowedByProgressiveEnergyUpdate) {
       links.update(std::vector<Edit>{move_to(last, to)}, LinkMethod::hvt_peu);
       EXPECT_LT(error_of(links), 1e-7);
     }
+  }
+}
+
+// What the sheet leaves open faces a bright wall from afar before it slides away, and from beside it then: neither the
+// form factor from before, nor those of quarters, says what the open part receives now.
+TEST(CoveredArea, CountsForProgressiveEnergyUpdateWhereOthersAreOpenThanBefore) {
+  const auto strip = [](double low, double high, std::uint32_t material) {
+    Surface s;
+    s.polygon.outer = {{low, 0, 0}, {high, 0, 0}, {high, 1, 0}, {low, 1, 0}};
+    s.material = material;
+    return s;
+  };
+  Surface wall;
+  wall.polygon.outer = {{4, 0, 0}, {4, 0, 1}, {4, 1, 1}, {4, 1, 0}};
+  wall.material = 1;
+  struct Slide {
+    double low, high, smallest_area;  // of the sheet; the floor's quarters have 1 m²
+  };
+  for (const Slide& c : {Slide{2, 4, 10}, Slide{2.2, 4, 0.9}}) {
+    SCOPED_TRACE(c.low);
+    Scene scene = empty_room();
+    scene.surfaces = {strip(0, 4, 2), wall};
+    add(scene, "sheet", {strip(c.low, c.high, 2)});
+    LinkOptions options = coarse();
+    options.eps2 = options.eps1 = 1e-6;
+    options.B_eps = 0.08;
+    options.smallest_area = c.smallest_area;
+    options.mesh.patch_size = 10;
+    LinkedRadiosity direct(scene, options), shot(scene, options);
+    for (LinkedRadiosity* links : {&direct, &shot}) links->build();
+    const std::vector<Edit> edits{move_to(1, {-c.low, 0, 0})};
+    direct.update(edits, LinkMethod::direct);
+    shot.update(edits, LinkMethod::hvt_peu);
+    std::size_t significant = 0;
+    ASSERT_EQ(direct.links().of_receiver(0).size(), shot.links().of_receiver(0).size());
+    for (std::size_t k = 0; k < direct.links().of_receiver(0).size(); ++k) {
+      const Link &now = direct.links().of_receiver(0)[k], &link = shot.links().of_receiver(0)[k];
+      if (now.ghost || now.energy <= options.B_eps) continue;
+      ++significant;
+      EXPECT_EQ(link.form_factor, now.form_factor);
+      EXPECT_EQ(link.visibility, now.visibility);
+    }
+    EXPECT_GT(significant, 0);
   }
 }
 

@@ -150,7 +150,7 @@ TEST(LinkedRadiosity, RefinementEndsWhenAskedAndWhereMemoryEnds) {
   LinkedRadiosity whole(room_with_things(), options), part(room_with_things(), options);
   EXPECT_FALSE(whole.build().stopped);
   std::atomic<int> left = 20;
-  const LinkUpdate update = part.build([&] { return left-- <= 0; });
+  const LinkUpdate update = part.build({[&] { return left-- <= 0; }, LinkOrder::any, {}});
   EXPECT_TRUE(update.stopped);
   const std::vector<std::uint8_t> moves(4);
   EXPECT_LT(part.links().count(part.tree(), moves).links(), whole.links().count(whole.tree(), moves).links());
