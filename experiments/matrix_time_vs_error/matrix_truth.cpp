@@ -10,8 +10,8 @@
 
 #include "geometry/contour_form_factor.h"
 #include "src/form_factor/matrix_check.h"
-#include "src/form_factor/pair_sample.h"
 #include "src/form_factor/pair_run.h"
+#include "src/form_factor/pair_sample.h"
 #include "src/visibility/exact_visibility.h"
 #include "src/visibility/fan_map.h"
 #include "src/visibility/sample_points.h"

@@ -24,6 +24,7 @@
 #include "src/cli/scene_options.h"
 #include "src/cli/verbs.h"
 #include "src/links/hierarchical_solution.h"
+#include "src/output/checkpoint.h"
 #include "src/output/manifest.h"
 #include "src/output/process_memory.h"
 #include "src/output/report.h"
@@ -143,7 +144,8 @@ class Solve {
     verb.add_option("--time-limit", time_limit_, "Seconds after which to end likewise")->check(positive_number());
     memory_limit_.add_to(verb);
     verb.add_option("--save-every", options_.save_every,
-                    "Seconds after which finished form factors, or what has been shot, are saved in the folder")
+                    "Seconds after which finished form factors, or what has been shot, are saved in the folder; more\n"
+                    "where saving takes over 5 % of the time")
         ->check(number_between(0))
         ->capture_default_str();
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
@@ -219,6 +221,12 @@ class Solve {
     if (rays_.chosen(options_.seed)) throw CLI::ValidationError("--visibility", "--method hierarchical is exact");
     std::optional<double> patch_size;
     if (patch_size_->count() > 0) patch_size = options_.mesh.patch_size;
+    std::optional<Checkpoint> of_other_methods;
+    if (!folder_.empty()) {
+      of_other_methods.emplace(unfinished(), key_of(scene) + "work links\n", Checkpoint::OtherRun::forgotten);
+      if (of_other_methods->has_forgotten())
+        print_warning(fmt::format("what was kept in {} was of other work, or damaged, and is removed", unfinished()));
+    }
     HierarchicalOptions how;
     const DynamicScene given = scene_.read_dynamic();
     how.links = links_.chosen(given, patch_size);
@@ -264,13 +272,16 @@ class Solve {
     options_.stop = [this, start] { return interrupted() || (time_limit_ && seconds_since(start) > *time_limit_); };
     options_.stop_is_a_limit = time_limit_.has_value();
     if (!folder_.empty()) {
-      options_.checkpoint = std::filesystem::path(folder_) / kUnfinished;
+      options_.checkpoint = unfinished();
       options_.key = key_of(scene);
+      options_.warn = print_warning;
     }
     ProgressDisplay display;
     options_.progress = [&](double fraction, std::string_view label) { display.show(fraction, label); };
     return solve_scene(scene, options_);
   }
+
+  std::string unfinished() const { return (std::filesystem::path(folder_) / kUnfinished).string(); }
 
   std::string key_of(const Scene& scene) const {
     const Manifest build = build_manifest();
@@ -293,7 +304,7 @@ class Solve {
       with(limit_reached,
            fmt::format("stopped after {} {}; {}", report.iterations, method_ == "shoot" ? "shots" : "iterations",
                        folder_.empty() ? "the result is partial"
-                       : solution.may_go_on && solution.checkpoint
+                       : solution.may_go_on && solution.checkpoint && !solution.checkpoint->parts().empty()
                            ? "the partial result was saved, and the same command goes on"
                            : "the partial result was saved"));
     }

@@ -45,6 +45,7 @@ AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairRun
   if (!run.complete) return {};
   AreaRows result;
   result.pairs = pairs_by_class(run.rows, n);
+  result.resumed = run.resumed;
   const FormFactorMatrix elements = matrix_of(run.rows, n);
   const std::vector<double> sums = row_sums(elements);
   for (std::uint32_t e = 0; e < n; ++e) {

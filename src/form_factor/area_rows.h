@@ -15,6 +15,7 @@ namespace exitance {
 struct AreaRows {
   FormFactorMatrix F;                    ///< elements × patches
   std::array<std::uint64_t, 4> pairs{};  ///< of elements, by class (pairs_by_class)
+  std::uint32_t resumed = 0;             ///< rows of elements that the checkpoint held
   /// Elements that something in their own plane covers, wholly or in part, or might: they need not see 1 in all.
   std::uint64_t covered_elements = 0;
   /// Largest |Σ_q F_eq − 1| of the other elements: the defect of a closed scene, without meaning in an open one.

@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 namespace exitance {
 namespace {
@@ -61,19 +62,19 @@ PointRowStatistics read_statistics(const ArchiveReader& file) {
           .standard_error_sum = sums[1]};
 }
 
-/// Puts the rows of a part behind those that are there.
-void read_points(const ArchiveReader& file, FormFactorMatrix& F) {
-  const std::vector<std::uint64_t> place = file.uint64s("first"), row_first = file.uint64s("row_first");
-  const std::vector<std::uint32_t> column = file.uint32s("column");
-  const std::vector<double> values = file.doubles("F"), errors = file.doubles("F_error");
-  if (!is_list_of_rows(row_first, column.size()) || values.size() != column.size() || errors.size() != column.size())
+/// The rows of a part that begins at row `first`, and the statistics of all up to its end.
+PointRows read_points(const ArchiveReader& file, std::uint64_t first, std::uint32_t columns) {
+  PointRows rows{.F = {.row_first = file.uint64s("row_first"),
+                       .column = file.uint32s("column"),
+                       .F = file.doubles("F"),
+                       .F_error = file.doubles("F_error"),
+                       .columns = columns},
+                 .statistics = read_statistics(file)};
+  const std::size_t entries = rows.F.column.size();
+  if (!is_list_of_rows(rows.F.row_first, entries) || rows.F.F.size() != entries || rows.F.F_error.size() != entries)
     file.refuse("its vectors do not fit each other");
-  if (place.size() != 1 || place[0] != F.rows()) file.refuse(fmt::format("its rows do not begin at {}", F.rows()));
-  const std::uint64_t before = F.F.size();
-  for (std::size_t k = 1; k < row_first.size(); ++k) F.row_first.push_back(before + row_first[k]);
-  F.column.insert(F.column.end(), column.begin(), column.end());
-  F.F.insert(F.F.end(), values.begin(), values.end());
-  F.F_error.insert(F.F_error.end(), errors.begin(), errors.end());
+  if (file.uint64s("first") != std::vector{first}) file.refuse(fmt::format("its rows do not begin at {}", first));
+  return rows;
 }
 
 }  // namespace
@@ -92,14 +93,21 @@ void keep_pairs(Checkpoint& checkpoint, const PairRows& rows) {
   });
 }
 
-std::vector<PairRows> kept_pairs(const Checkpoint& checkpoint) {
+std::vector<PairRows> kept_pairs(Checkpoint& checkpoint) {
   std::vector<PairRows> all;
   std::set<std::uint32_t> seen;
-  for (const std::filesystem::path& part : checkpoint.parts()) {
-    all.push_back(read_pairs(checkpoint.open(part)));
-    for (const std::uint32_t row : all.back().row) {
-      if (!seen.insert(row).second)
-        throw DamagedFile(part, fmt::format("holds row {}, which another file of its folder holds already", row));
+  const std::vector<std::filesystem::path> parts = checkpoint.parts();
+  for (const std::filesystem::path& part : parts) {
+    try {
+      PairRows rows = read_pairs(checkpoint.open(part));
+      for (const std::uint32_t row : rows.row) {
+        if (!seen.insert(row).second)
+          throw DamagedFile(part, fmt::format("holds row {}, which another file of its folder holds already", row));
+      }
+      all.push_back(std::move(rows));
+    } catch (const DamagedFile&) {
+      if (!checkpoint.forgets()) throw;
+      checkpoint.forget(part);
     }
   }
   return all;
@@ -121,13 +129,19 @@ void keep_points(Checkpoint& checkpoint, const PointRows& rows, std::size_t firs
   });
 }
 
-PointRows kept_points(const Checkpoint& checkpoint, std::uint32_t columns) {
+PointRows kept_points(Checkpoint& checkpoint, std::uint32_t columns) {
   PointRows rows;
   rows.F.columns = columns;
-  for (const std::filesystem::path& part : checkpoint.parts()) {
-    const ArchiveReader file = checkpoint.open(part);
-    read_points(file, rows.F);
-    rows.statistics = read_statistics(file);
+  const std::vector<std::filesystem::path> parts = checkpoint.parts();
+  for (auto part = parts.begin(); part != parts.end(); ++part) {
+    try {
+      const PointRows more = read_points(checkpoint.open(*part), rows.F.rows(), columns);
+      append(rows.F, more.F);
+      rows.statistics = more.statistics;
+    } catch (const DamagedFile&) {
+      std::for_each(part, parts.end(), [&](const std::filesystem::path& lost) { checkpoint.forget(lost); });
+      break;
+    }
   }
   return rows;
 }

@@ -13,16 +13,16 @@ namespace exitance {
 /// checkpoint does.
 void keep_pairs(Checkpoint& checkpoint, const PairRows& rows);
 
-/// All of them, in the order in which they were kept. Throws DamagedFile for a row that is there twice, and what the
-/// checkpoint does.
-std::vector<PairRows> kept_pairs(const Checkpoint& checkpoint);
+/// All of them, in the order in which they were kept. A part that is damaged or holds a row that is there already is
+/// forgotten where the checkpoint forgets; otherwise throws DamagedFile, and what the checkpoint does.
+std::vector<PairRows> kept_pairs(Checkpoint& checkpoint);
 
 /// Saves the rows from `first` on of those that sample points see, and the statistics of all of them. Those before were
 /// kept.
 void keep_points(Checkpoint& checkpoint, const PointRows& rows, std::size_t first);
 
-/// The first rows of so many columns that were kept. Throws DamagedFile for a part that does not go on where the one
-/// before ends, and what the checkpoint does.
-PointRows kept_points(const Checkpoint& checkpoint, std::uint32_t columns);
+/// The first rows of so many columns that were kept: up to the first part that is damaged or does not go on where the
+/// one before ends, which is forgotten with those behind it. Throws what else the checkpoint does.
+PointRows kept_points(Checkpoint& checkpoint, std::uint32_t columns);
 
 }  // namespace exitance

@@ -34,7 +34,7 @@ class Stride {
   double aim_;
 };
 
-std::vector<PairRows> finished_rows(const Checkpoint& checkpoint) {
+std::vector<PairRows> finished_rows(Checkpoint& checkpoint) {
   try {
     return kept_pairs(checkpoint);
   } catch (const DamagedFile& damaged) {

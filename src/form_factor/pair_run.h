@@ -35,7 +35,7 @@ std::string pair_run_key(const std::string& scene_hash, double patch_size, const
 
 /// The rows that the checkpoint does not hold, ascending, in blocks of at least a row. The same bits for any
 /// number of threads, and however often the run was ended. checkpoint: may be null; what it throws passes through, but
-/// that a damaged file asks to be removed.
+/// that a damaged file asks to be removed (unless the checkpoint forgets it).
 PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Checkpoint* checkpoint);
 
 }  // namespace exitance

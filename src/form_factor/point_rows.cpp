@@ -37,11 +37,19 @@ void append(FormFactorMatrix& F, const PointRow& row) {
   F.row_first.push_back(F.F.size());
 }
 
-PointRows point_rows(const MeshVisibility& visibility, std::size_t first, std::size_t last, const Progress& progress) {
+void append(FormFactorMatrix& F, const FormFactorMatrix& more) {
+  const std::uint64_t before = F.F.size();
+  for (std::size_t r = 1; r < more.row_first.size(); ++r) F.row_first.push_back(before + more.row_first[r]);
+  F.column.insert(F.column.end(), more.column.begin(), more.column.end());
+  F.F.insert(F.F.end(), more.F.begin(), more.F.end());
+  F.F_error.insert(F.F_error.end(), more.F_error.begin(), more.F_error.end());
+}
+
+PointRows point_rows(const MeshVisibility& visibility, std::size_t first, std::size_t last) {
   PointRows result;
   result.F.columns = static_cast<std::uint32_t>(visibility.mesh().patches.size());
   observe(
-      visibility, last - first, [&](std::size_t k) { return first + k; }, progress,
+      visibility, last - first, [&](std::size_t k) { return first + k; }, {},
       [&](const PointRow& row) {
         append(result.F, row);
         result.statistics += row.statistics;

@@ -18,9 +18,11 @@ struct PointRows {
 /// Appends a row to the matrix.
 void append(FormFactorMatrix& F, const PointRow& row);
 
+/// Appends the rows of a matrix of as many columns.
+void append(FormFactorMatrix& F, const FormFactorMatrix& more);
+
 /// Rows of the elements `first` … `last` − 1. In parallel; any number of threads gives the same bits.
-PointRows point_rows(const MeshVisibility& visibility, std::size_t first, std::size_t last,
-                     const Progress& progress = {});
+PointRows point_rows(const MeshVisibility& visibility, std::size_t first, std::size_t last);
 
 /// The statistics of the rows of some elements, in any order; the rows are not kept. In parallel; any number of threads
 /// gives the same. An element that is named twice counts twice.

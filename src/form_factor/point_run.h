@@ -16,12 +16,13 @@ struct PointRun {
 };
 
 struct PointRunOptions {
-  double block_seconds = 2;         ///< about how much work is put into what is saved at a time
+  double block_seconds = 2;         ///< about how much work is put into what is saved at a time (SavePace)
   std::function<bool()> stop = {};  ///< asked between blocks of rows; may be empty
   Progress progress = {};
 };
 
-/// The rows that the checkpoint does not hold; where it is ended, all that are finished are saved before it returns.
+/// The rows that the checkpoint does not hold. Where it is ended, or where some were saved, all that are finished are
+/// saved before it returns.
 /// The same bits for any number of threads, and however often the run was ended. checkpoint: may be null; what it
 /// throws passes through.
 PointRun run_points(const MeshVisibility& visibility, const PointRunOptions& options, Checkpoint* checkpoint);

@@ -69,7 +69,7 @@ Checkpoint::Lock::~Lock() {
 }
 
 Checkpoint::Checkpoint(fs::path folder, std::string key, OtherRun other)
-    : folder_(std::move(folder)), key_(std::move(key)), lock_(folder_) {
+    : folder_(std::move(folder)), key_(std::move(key)), other_(other), lock_(folder_) {
   std::vector<std::pair<std::uint64_t, fs::path>> found;
   std::vector<fs::path> drafts;
   for (const auto& entry : fs::directory_iterator(folder_)) {
@@ -84,9 +84,10 @@ Checkpoint::Checkpoint(fs::path folder, std::string key, OtherRun other)
     parts_.push_back(std::move(path));
     next_ = number + 1;
   }
-  if (other == OtherRun::forgotten &&
-      !std::ranges::all_of(parts_, [this](const fs::path& part) { return is_sound(part); }))
+  if (forgets() && !std::ranges::all_of(parts_, [this](const fs::path& part) { return is_sound(part); })) {
     remove_first(parts_.size());
+    has_forgotten_ = true;
+  }
 }
 
 bool Checkpoint::is_sound(const fs::path& part) const {
@@ -116,6 +117,13 @@ void Checkpoint::add(const std::function<void(ArchiveWriter&)>& write) {
   file.publish();
   parts_.push_back(path);
   ++next_;
+}
+
+void Checkpoint::forget(const fs::path& part) {
+  const fs::path path = part;  // it may be one of parts_ itself
+  std::error_code ignored;
+  fs::remove(path, ignored);
+  std::erase(parts_, path);
 }
 
 void Checkpoint::replace(const std::function<void(ArchiveWriter&)>& write) {

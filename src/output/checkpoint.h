@@ -18,7 +18,7 @@ class Checkpoint {
   /// What becomes of what another run, whose key differs, has left there.
   enum class OtherRun : std::uint8_t {
     refused,   ///< it stays: `open` throws
-    forgotten  ///< it is removed, and so is what is damaged
+    forgotten  ///< it is removed: all parts as soon as one of them is another's or cannot be opened
   };
 
   /// Opens the folder, or makes it. key: everything the parts depend on (mesh hash, tolerance, options, version), one
@@ -29,6 +29,9 @@ class Checkpoint {
   ~Checkpoint();
   Checkpoint(const Checkpoint&) = delete;
   Checkpoint& operator=(const Checkpoint&) = delete;
+
+  /// Whether parts were found there that `forgotten` removed.
+  bool has_forgotten() const { return has_forgotten_; }
 
   /// What was added so far, in the order in which it was.
   const std::vector<std::filesystem::path>& parts() const { return parts_; }
@@ -42,7 +45,13 @@ class Checkpoint {
   /// refuses.
   void add(const std::function<void(ArchiveWriter&)>& write);
 
-  /// The same of a part that stands for all before it, which are removed.
+  /// Whether damage is no reason to stop: what cannot be read is forgotten and made anew.
+  bool forgets() const { return other_ == OtherRun::forgotten; }
+
+  /// Removes one of the parts, which cannot be used.
+  void forget(const std::filesystem::path& part);
+
+  /// Like `add`, of a part that stands for all before it, which are removed.
   void replace(const std::function<void(ArchiveWriter&)>& write);
 
   /// Removes the checkpoint: the run is complete and its result saved. The folder stays if it holds other files.
@@ -66,10 +75,12 @@ class Checkpoint {
 
   std::filesystem::path folder_;
   std::string key_;
+  OtherRun other_;
   Lock lock_;
   std::vector<std::filesystem::path> parts_;  // in the order of their numbers
   std::uint64_t next_ = 1;                    // number of the next part
-  bool is_removed_ = false;
+  bool has_forgotten_ = false;
+  bool is_removed_ = false;  // then a folder of that name is another run's, though it may be empty
 };
 
 }  // namespace exitance

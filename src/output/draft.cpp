@@ -61,7 +61,7 @@ Draft::Draft(const fs::path& path) : path_(path), beside_(path) {
   if (failed.value() == ELOOP) refuse(failed.message());
   beside_ += '.';
   remove_leftovers(folder(), beside_.filename().native(), kSuffix);
-  beside_ += std::to_string(getpid());
+  beside_ += name_of_process(getpid());
   beside_ += kSuffix;
 }
 

@@ -9,7 +9,7 @@ namespace exitance {
 /// The path beside `path` under which it is written. Removed at the end unless published. A link is followed: what it
 /// leads to is replaced, though it may not be there yet, and the link stays. What cannot be replaced (a FIFO, a device,
 /// a socket, an open file under /proc such as /dev/stdout) is written to directly. Drafts of the same file that killed
-/// processes have left are removed.
+/// processes of this host have left are removed (leftovers.h).
 class Draft {
  public:
   /// Throws InputError when a folder stands there.

@@ -71,6 +71,7 @@ std::string to_json(const Report& r) {
                      {"closure_max_defect", or_null(r.closure_max_defect)},
                      {"measured_points", r.measured_points},
                      {"covered_points", r.covered_points},
+                     {"resumed_rows", r.resumed_rows},
                      {"reciprocity_max_defect", or_null(r.reciprocity_max_defect)},
                      {"ambient", r.ambient},
                      {"B_min", r.B_min},

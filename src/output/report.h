@@ -63,6 +63,7 @@ struct Report {
   std::optional<double> closure_max_defect;  ///< none where the scene is open or nothing was measured
   std::uint64_t measured_points = 0;         ///< sample points for which closure, covered points and pairs were counted
   std::uint64_t covered_points = 0;
+  std::uint64_t resumed_rows = 0;                ///< of form factors: those that an earlier run had made
   std::optional<double> reciprocity_max_defect;  ///< of pairs integrated anew; none where none was
   /// By band, of unit B: solution.ply and image.png show B + ρ · ambient where shooting was ended early; else empty.
   std::vector<double> ambient;

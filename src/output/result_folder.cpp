@@ -19,7 +19,7 @@ constexpr const char* kDraft = ".draft.";
 }  // namespace
 
 ResultFolder::ResultFolder(fs::path folder)
-    : folder_(std::move(folder)), draft_(folder_ / (kDraft + std::to_string(getpid()))) {
+    : folder_(std::move(folder)), draft_(folder_ / (kDraft + name_of_process(getpid()))) {
   remove_leftovers(folder_, kDraft, "");
   std::error_code failed;
   for (fs::path path = fs::absolute(folder_); !fs::exists(path, failed); path = path.parent_path())

@@ -8,7 +8,7 @@ namespace exitance {
 
 /// Results are written into a draft folder within the folder and moved out of it, replacing earlier ones, when all that
 /// belongs together is there. What is not published is removed, and so are folders that were made for nothing and the
-/// drafts that killed processes have left.
+/// drafts that killed processes of this host have left (leftovers.h).
 class ResultFolder {
  public:
   /// Makes the folder (and its parents) and the draft in it, so that a long piece of work fails at its start when its

@@ -4,10 +4,10 @@
 
 #include <utility>
 
+#include "src/form_factor/pair_run.h"
 #include "src/form_factor/sampled_area_rows.h"
 #include "src/output/run_clock.h"
 #include "src/reference/matrix_file.h"
-#include "src/form_factor/pair_run.h"
 #include "src/scene/input_error.h"
 
 namespace exitance {

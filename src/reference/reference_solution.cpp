@@ -12,9 +12,9 @@
 #include <system_error>
 #include <utility>
 
+#include "src/form_factor/pair_run.h"
 #include "src/output/checkpoint.h"
 #include "src/reference/comparison.h"
-#include "src/form_factor/pair_run.h"
 #include "src/reference/patch_polynomials.h"
 #include "src/reference/refined_mesh.h"
 #include "src/reference/sampled_residual.h"

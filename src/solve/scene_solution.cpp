@@ -102,17 +102,22 @@ class SceneSolver {
                     static_cast<double>(options_.memory_limit) * 0x1p-30));
   }
 
-  /// Of the work that is named. Null where none is asked for.
+  /// Of the work that is named, though nothing may be kept of it: what is there of other work is forgotten. Null where
+  /// none is asked for.
   Checkpoint* begin_checkpoint(const char* work) {
     if (options_.checkpoint.empty()) return nullptr;
     result_.checkpoint = std::make_shared<Checkpoint>(
         options_.checkpoint, fmt::format("{}work {}\n", options_.key, work), Checkpoint::OtherRun::forgotten);
+    if (result_.checkpoint->has_forgotten() && options_.warn) {
+      options_.warn(fmt::format("what was kept in {} was of other work, or damaged, and is removed",
+                                options_.checkpoint.string()));
+    }
     return result_.checkpoint.get();
   }
 
   [[noreturn]] void refuse_unfinished_rows() const {
     throw LimitError(fmt::format("stopped before the form factors were complete; {}",
-                                 result_.checkpoint == nullptr
+                                 result_.checkpoint == nullptr || result_.checkpoint->parts().empty()
                                      ? "nothing was saved"
                                      : fmt::format("finished rows are kept in {}, from where the same command goes on",
                                                    options_.checkpoint.string())));
@@ -122,6 +127,7 @@ class SceneSolver {
 
   FormFactorMatrix area_rows_of_elements() {
     if (options_.rays) {
+      begin_checkpoint("rows of areas by rays");
       const auto report = [&](double fraction, std::string_view label) {
         if (options_.progress) options_.progress(fraction, label);
         if (fraction < 1 && stopped()) refuse_unfinished_rows();
@@ -144,6 +150,7 @@ class SceneSolver {
     result_.statistics.closure_max_defect = rows.closure_max_defect;
     result_.closure_error = rows.largest_row_error;
     result_.reciprocity_max_defect = rows.reciprocity_max_defect;
+    result_.resumed_rows = rows.resumed;
     return std::move(rows.F);
   }
 
@@ -158,6 +165,7 @@ class SceneSolver {
           begin_checkpoint("rows of points"));
       if (!run.complete) refuse_unfinished_rows();
       result_.statistics = run.rows.statistics;
+      result_.resumed_rows = run.resumed;
       F = std::move(run.rows.F);
     }
     result_.measured_points = result_.mesh.elements.size();
@@ -191,18 +199,19 @@ class SceneSolver {
 
   void shoot_without_matrix() {
     // What never shoots, because it is black, is needed for the energy that escapes.
-    const ShootSolution solution = shoot_all(
+    ShootSolution solution = shoot_all(
         [&](std::size_t patch, std::span<double> F, std::span<double> F_error) {
           return point_column(*visibility_, patch, F, F_error, options_.stop);
         },
         {.all_columns = true, .checkpoint = begin_checkpoint("shots"), .save_seconds = options_.save_every});
-    result_.element_row_sum = solution.element_row_sum;
+    result_.element_row_sum = std::move(solution.element_row_sum);
     all_columns_known_ = !result_.stopped && solution.all_columns_known;
     result_.stopped = !all_columns_known_;
     if (!stopped()) measure_sample();
     result_.seconds_solve = stopwatch_.lap();
   }
 
+  /// Returns what it found of the rows; the solution itself is in the result.
   ShootSolution shoot_all(const ShootColumn& column, ShootOptions how) {
     how.tolerance = options_.tolerance;
     how.progress = options_.progress;
@@ -211,9 +220,9 @@ class SceneSolver {
     ShootSolution solution = shoot(result_.discretisation, column, how);
     result_.stopped = !solution.patches.converged && (solution.patches.iterations >= how.max_shots || stopped());
     if (result_.stopped) result_.ambient = ambient_estimate(result_.discretisation, solution.unshot);
-    result_.patches = solution.patches;
-    result_.element_H = solution.element_H;
-    result_.element_B = solution.element_B;
+    result_.patches = std::move(solution.patches);
+    result_.element_H = std::move(solution.element_H);
+    result_.element_B = std::move(solution.element_B);
     result_.form_factor_error = solution.form_factor_error;
     return solution;
   }

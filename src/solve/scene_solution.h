@@ -56,7 +56,8 @@ struct SolveOptions {
   /// the same work is begun again; empty: none. Rows of receivers `area` by rays are not.
   std::filesystem::path checkpoint = {};
   std::string key = {};   ///< what it all depends on, as a Checkpoint's; with another one the work begins anew
-  double save_every = 2;  ///< seconds after which it is saved
+  double save_every = 2;  ///< seconds after which it is saved, or more where saving takes long (SavePace)
+  std::function<void(const std::string&)> warn = {};  ///< told of what was kept and is of no use; may be empty
 };
 
 struct SceneSolution {
@@ -92,6 +93,7 @@ struct SceneSolution {
   /// None where no such pair was found, or time was up.
   std::optional<double> reciprocity_max_defect;
 
+  std::uint64_t resumed_rows = 0;  ///< of elements: those that the checkpoint held
   /// To be removed when the solution is saved, unless the work `may_go_on`. Null without SolveOptions::checkpoint.
   std::shared_ptr<Checkpoint> checkpoint;
   bool may_go_on = false;  ///< whether `stop` ended it

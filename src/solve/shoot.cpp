@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "src/output/archive.h"
-#include "src/output/run_clock.h"
+#include "src/output/save_pace.h"
 #include "src/solve/compensated.h"
 #include "src/solve/error_bound.h"
 
@@ -20,9 +21,6 @@ namespace exitance {
 namespace {
 
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
-
-/// A state takes no more than this share of the time to save.
-constexpr double kShareOfSaving = 0.05;
 
 void write_sums(ArchiveWriter& file, const std::string& name, std::span<const CompensatedSum> sums) {
   std::vector<double> high, low;
@@ -252,32 +250,21 @@ class Shooting {
   std::uint64_t shots_ = 0;
 };
 
-// Saves the state now and then.
-class Keeper {
- public:
-  explicit Keeper(const ShootOptions& options) : checkpoint_(options.checkpoint), interval_(options.save_seconds) {}
-
-  void take_up(Shooting& state) const {
-    if (checkpoint_ == nullptr || checkpoint_->parts().empty()) return;
-    state.read(checkpoint_->open(checkpoint_->parts().back()));
+/// What was kept last and can be read: what cannot is forgotten. The beginning where there is nothing, or no
+/// checkpoint.
+Shooting taken_up(const Discretisation& d, Checkpoint* checkpoint) {
+  while (checkpoint != nullptr && !checkpoint->parts().empty()) {
+    const std::filesystem::path last = checkpoint->parts().back();
+    try {
+      Shooting state(d);
+      state.read(checkpoint->open(last));
+      return state;
+    } catch (const DamagedFile&) {
+      checkpoint->forget(last);
+    }
   }
-  void keep_in_time(const Shooting& state) {
-    if (checkpoint_ == nullptr || since_.seconds() < interval_) return;
-    const RunClock saving;
-    keep(state);
-    interval_ = std::max(interval_, saving.seconds() * (interval_ > 0 ? 1 / kShareOfSaving : 0));
-    since_ = RunClock();
-  }
-  void keep(const Shooting& state) const {
-    if (checkpoint_ == nullptr) return;
-    checkpoint_->replace([&](ArchiveWriter& file) { state.write(file); });
-  }
-
- private:
-  Checkpoint* checkpoint_;
-  double interval_;
-  RunClock since_;
-};
+  return Shooting(d);
+}
 
 }  // namespace
 
@@ -300,19 +287,21 @@ ShootSolution shoot(const Discretisation& d, const ShootColumn& column, const Sh
     nothing.patches.converged = nothing.all_columns_known = true;
     return nothing;
   }
-  Shooting state(d);
-  const double first_energy = state.unshot_energy();
+  const double first_energy = Shooting(d).unshot_energy();
+  Shooting state = taken_up(d, options.checkpoint);
   const auto solved = [&] {
     return *std::max_element(state.bounds().begin(), state.bounds().end()) <= options.tolerance;
   };
   double shown = 0;
-  Keeper keeper(options);
-  keeper.take_up(state);
+  SavePace pace(options.save_seconds);
+  const auto keep = [&] {
+    if (options.checkpoint != nullptr) options.checkpoint->replace([&](ArchiveWriter& file) { state.write(file); });
+  };
   const auto asked_to_stop = [&] { return options.stop && options.stop(); };
   const auto stopped = [&] { return state.shots() >= options.max_shots || asked_to_stop(); };
   while (!stopped() && !solved() && !state.only_rounding_is_left(options.tolerance)) {
     if (!state.shoot_strongest(column)) break;
-    keeper.keep_in_time(state);
+    pace.in_time(keep);
     if (options.progress) {
       const double left = std::max(state.unshot_energy() / first_energy, options.tolerance);
       shown = std::clamp(std::log(left) / std::log(options.tolerance), shown, 1.0);
@@ -323,9 +312,9 @@ ShootSolution shoot(const Discretisation& d, const ShootColumn& column, const Sh
   for (std::size_t p = 0; options.all_columns && !ended_early && p < d.patches(); ++p) {
     if (state.is_seen(p)) continue;
     if (!state.look_at(p, column)) break;
-    keeper.keep_in_time(state);
+    pace.in_time(keep);
   }
-  if (asked_to_stop()) keeper.keep(state);
+  if (asked_to_stop()) keep();
   return state.solution(options.tolerance);
 }
 

@@ -29,9 +29,10 @@ struct ShootOptions {
   /// Whether to ask for the columns of patches that never shot, too, once nothing is left to shoot.
   bool all_columns = false;
   /// Where the state is kept every so many seconds, and when `stop` ends the work, and from where it goes on with the
-  /// same bits; may be null. It belongs to the same discretisation, form factors and options.
+  /// same bits; may be null. It belongs to the same discretisation, form factors and options. A state that is damaged
+  /// is forgotten.
   Checkpoint* checkpoint = nullptr;
-  double save_seconds = 2;
+  double save_seconds = 2;  ///< or more, where saving takes long (SavePace)
 };
 
 struct ShootSolution {

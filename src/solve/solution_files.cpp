@@ -95,6 +95,7 @@ Report make_report(const Scene& scene, const SceneSolution& s) {
   report.ambient = s.ambient;
   report.measured_points = s.measured_points;
   report.covered_points = s.statistics.covered_points;
+  report.resumed_rows = s.resumed_rows;
   report.reciprocity_max_defect = s.reciprocity_max_defect;
   std::tie(report.B_min, report.B_max) = range_of_B(s);
   report.pairs = s.statistics.pairs;

@@ -235,7 +235,7 @@ nlohmann::json answers(nlohmann::json report) {
 /// What a solution says, but for times and memory.
 nlohmann::json solution_in(const std::filesystem::path& folder) {
   nlohmann::json report = json_in(folder / "result.json");
-  for (const char* name : {"seconds", "peak_memory_bytes", "threads"}) report.erase(name);
+  for (const char* name : {"seconds", "peak_memory_bytes", "threads", "resumed_rows"}) report.erase(name);
   report.at("manifest").erase("threads");
   report.at("manifest").erase("options");
   return report;
@@ -284,6 +284,26 @@ TEST_P(KilledSolve, GoesOnWithTheSameBits) {
 INSTANTIATE_TEST_SUITE_P(Methods, KilledSolve,
                          testing::Values("--patch-size 0.5 --elements 3", "--patch-size 1.5 --receivers area",
                                          "--patch-size 1 --method shoot --time-limit 1000 --tolerance 1e-3"));
+
+/// Of what is kept where: whatever is solved next in that folder.
+class OtherSolve : public testing::TestWithParam<const char*> {};
+
+TEST_P(OtherSolve, RemovesWhatWasKeptAndSaysSo) {
+  const ScratchFolder scratch;
+  const std::filesystem::path kept = scratch / "out/unfinished.parts";
+  std::filesystem::create_directories(kept);
+  std::ofstream(kept / "part-000001.h5") << "of another program";
+  const Outcome outcome = run("solve " + data("furnace_cube.toml") + " --patch-size 0.5 " + GetParam() + " -o " +
+                              (scratch / "out").string());
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: what was kept in " + kept.string()), std::string::npos) << outcome.err;
+  EXPECT_FALSE(exists(kept));
+  EXPECT_EQ(json_in(scratch / "out/result.json").at("resumed_rows"), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, OtherSolve,
+                         testing::Values("", "--method shoot --time-limit 1000 --tolerance 1e-3",
+                                         "--method hierarchical", "--receivers area --visibility rays --rays 16"));
 
 TEST(Kill, OfStressLosesNoQuestionThatWasKept) {
   const ScratchFolder scratch;

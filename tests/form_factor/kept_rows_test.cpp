@@ -16,6 +16,7 @@
 #include <tuple>
 
 #include "tests/output/damage.h"
+#include "tests/output/error_of.h"
 
 namespace exitance {
 namespace {
@@ -57,7 +58,7 @@ bool operator==(const PairRows& a, const PairRows& b) {
          a.F_reverse == b.F_reverse && a.F_reverse_error == b.F_reverse_error && a.mark == b.mark;
 }
 
-std::set<std::uint32_t> rows_in(const Checkpoint& checkpoint) {
+std::set<std::uint32_t> rows_in(Checkpoint& checkpoint) {
   std::set<std::uint32_t> found;
   for (const PairRows& part : kept_pairs(checkpoint)) {
     PairRows expected;
@@ -68,17 +69,7 @@ std::set<std::uint32_t> rows_in(const Checkpoint& checkpoint) {
   return found;
 }
 
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    return error.what();
-  }
-  return "";
-}
-
-TEST(Checkpoint, RowsComeBackBitForBitInTheirOrder) {
+TEST(KeptRows, RowsComeBackBitForBitInTheirOrder) {
   const ScratchFolder folder;
   const auto path = folder / "m.h5.parts";
   {
@@ -97,41 +88,7 @@ TEST(Checkpoint, RowsComeBackBitForBitInTheirOrder) {
   EXPECT_TRUE(parts[2] == some_rows(40, 45));
 }
 
-TEST(Checkpoint, IsRemovedWithEverythingOfItsOwn) {
-  const ScratchFolder folder;
-  Checkpoint first(folder / "a.parts", kKey);
-  keep_pairs(first, some_rows(0, 3));
-  first.remove();
-  EXPECT_EQ(folder.files(), 0u);
-  Checkpoint second(folder / "b.parts", kKey);
-  keep_pairs(second, some_rows(0, 3));
-  put(folder / "b.parts" / "notes.txt", "mine");
-  second.remove();
-  EXPECT_EQ(contents(folder / "b.parts" / "notes.txt"), "mine");
-}
-
-TEST(Checkpoint, OfAnotherRunIsNamedWithWhatDiffers) {
-  const ScratchFolder folder;
-  {
-    Checkpoint checkpoint(folder / "a.parts", kKey);
-    keep_pairs(checkpoint, some_rows(0, 3));
-  }
-  const Checkpoint other(folder / "a.parts", "mesh 1234\ntolerance 1e-6\nversion 0.1");
-  EXPECT_THAT(error_of([&] { kept_pairs(other); }),
-              AllOf(HasSubstr("part-000001.h5"), HasSubstr("\"tolerance 1e-9\" there, \"tolerance 1e-6\" here")));
-}
-
-TEST(Checkpoint, OfAShorterKeyIsNamedToo) {
-  const ScratchFolder folder;
-  {
-    Checkpoint checkpoint(folder / "a.parts", kKey);
-    keep_pairs(checkpoint, some_rows(0, 3));
-  }
-  const Checkpoint other(folder / "a.parts", std::string(kKey) + "\nseed 2");
-  EXPECT_THAT(error_of([&] { kept_pairs(other); }), HasSubstr("\"\" there, \"seed 2\" here"));
-}
-
-TEST(Checkpoint, DamageIsNoticedAndNamed) {
+TEST(KeptRows, DamageIsNoticedAndNamed) {
   const ScratchFolder folder;
   const auto path = folder / "a.parts";
   {
@@ -144,7 +101,7 @@ TEST(Checkpoint, DamageIsNoticedAndNamed) {
   std::size_t noticed = 0;
   for (std::size_t at = 0; at < bytes.size(); at += 97) {
     put(damaged, flipped(bytes, at));
-    const Checkpoint checkpoint(path, kKey);
+    Checkpoint checkpoint(path, kKey);
     try {
       EXPECT_EQ(rows_in(checkpoint).size(), 400u) << at;
     } catch (const InputError& error) {
@@ -155,7 +112,8 @@ TEST(Checkpoint, DamageIsNoticedAndNamed) {
   EXPECT_GT(noticed, bytes.size() / 97 / 2);
   for (const std::size_t length : {std::size_t{0}, std::size_t{1}, bytes.size() / 2, bytes.size() - 1}) {
     put(damaged, bytes.substr(0, length));
-    EXPECT_THROW(kept_pairs(Checkpoint(path, kKey)), DamagedFile) << length;
+    Checkpoint checkpoint(path, kKey);
+    EXPECT_THROW(kept_pairs(checkpoint), DamagedFile) << length;
   }
   // Removed, as the message says, it costs its own rows only, and a new part takes no old name.
   std::filesystem::remove(path / "part-000001.h5");
@@ -166,7 +124,7 @@ TEST(Checkpoint, DamageIsNoticedAndNamed) {
   EXPECT_EQ(rows_in(checkpoint).size(), 400u);
 }
 
-TEST(Checkpoint, ARowThatIsThereTwiceIsNoticed) {
+TEST(KeptRows, ARowThatIsThereTwiceIsNoticed) {
   const ScratchFolder folder;
   Checkpoint checkpoint(folder / "a.parts", kKey);
   keep_pairs(checkpoint, some_rows(0, 3));
@@ -174,7 +132,7 @@ TEST(Checkpoint, ARowThatIsThereTwiceIsNoticed) {
   EXPECT_THAT(error_of([&] { kept_pairs(checkpoint); }), AllOf(HasSubstr("part-000002.h5"), HasSubstr("row 2")));
 }
 
-TEST(Checkpoint, RowsThatDoNotFitAreRefused) {
+TEST(KeptRows, RowsThatDoNotFitAreRefused) {
   const ScratchFolder folder;
   Checkpoint checkpoint(folder / "a.parts", kKey);
   PairRows rows = some_rows(0, 3);
@@ -184,47 +142,6 @@ TEST(Checkpoint, RowsThatDoNotFitAreRefused) {
   rows.row.push_back(9);
   EXPECT_THROW(keep_pairs(checkpoint, rows), std::invalid_argument);
   EXPECT_TRUE(kept_pairs(checkpoint).empty());
-}
-
-TEST(Checkpoint, BelongsToOneRunAtATime) {
-  const ScratchFolder folder;
-  const Checkpoint first(folder / "a.parts", kKey);
-  EXPECT_THAT(error_of([&] { Checkpoint(folder / "a.parts", kKey); }), HasSubstr("another run"));
-  put(folder / "file", "");
-  EXPECT_THAT(error_of([&] { Checkpoint(folder / "file", kKey); }), HasSubstr("cannot be kept there"));
-  EXPECT_THAT(error_of([&] { Checkpoint(folder / "file" / "a.parts", kKey); }), HasSubstr("cannot be kept there"));
-}
-
-TEST(Checkpoint, OfAnotherRunIsForgottenWhereThatIsAskedFor) {
-  const ScratchFolder folder;
-  const auto path = folder / "a.parts";
-  {
-    Checkpoint checkpoint(path, kKey);
-    keep_pairs(checkpoint, some_rows(0, 3));
-    keep_pairs(checkpoint, some_rows(3, 4));
-  }
-  EXPECT_EQ(kept_pairs(Checkpoint(path, kKey, Checkpoint::OtherRun::forgotten)).size(), 2u) << "it is its own";
-  {
-    Checkpoint other(path, "mesh 5678", Checkpoint::OtherRun::forgotten);
-    EXPECT_TRUE(other.parts().empty());
-    keep_pairs(other, some_rows(7, 9));
-  }
-  put(path / "part-000004.h5", "damaged");
-  EXPECT_TRUE(Checkpoint(path, "mesh 5678", Checkpoint::OtherRun::forgotten).parts().empty());
-  EXPECT_EQ(folder.files(), 0u) << "nothing was kept in it since";
-}
-
-TEST(Checkpoint, OfAStateHoldsTheLastOne) {
-  const ScratchFolder folder;
-  const auto path = folder / "a.parts";
-  {
-    Checkpoint checkpoint(path, kKey);
-    for (const double state : {1.0, 2.0, 3.0})
-      checkpoint.replace([&](ArchiveWriter& file) { file.write("state", std::span(&state, 1)); });
-  }
-  const Checkpoint checkpoint(path, kKey);
-  ASSERT_EQ(checkpoint.parts().size(), 1u);
-  EXPECT_EQ(checkpoint.open(checkpoint.parts()[0]).doubles("state"), std::vector<double>{3.0});
 }
 
 PointRows some_points(std::uint32_t count) {
@@ -267,10 +184,63 @@ TEST(KeptRows, OfPointsComeBackWithTheirStatistics) {
     keep_points(checkpoint, some_points(11), 10);
     keep_points(checkpoint, some_points(30), 11);
   }
-  expect_same(kept_points(Checkpoint(folder / "a.parts", kKey), 99), some_points(30));
-  std::filesystem::remove(folder / "a.parts" / "part-000002.h5");
-  EXPECT_THAT(error_of([&] { kept_points(Checkpoint(folder / "a.parts", kKey), 99); }),
-              AllOf(HasSubstr("part-000003.h5"), HasSubstr("do not begin at 10")));
+  Checkpoint checkpoint(folder / "a.parts", kKey);
+  expect_same(kept_points(checkpoint, 99), some_points(30));
+}
+
+TEST(KeptRows, OfPointsGoOnToTheFirstPartThatDoesNotFit) {
+  const ScratchFolder folder;
+  Checkpoint checkpoint(folder / "a.parts", kKey, Checkpoint::OtherRun::forgotten);
+  keep_points(checkpoint, some_points(10), 0);
+  keep_points(checkpoint, some_points(11), 10);
+  keep_points(checkpoint, some_points(30), 11);
+  checkpoint.forget(folder / "a.parts" / "part-000002.h5");
+  expect_same(kept_points(checkpoint, 99), some_points(10));
+  EXPECT_FALSE(exists(folder / "a.parts" / "part-000003.h5"));
+  keep_points(checkpoint, some_points(30), 10);
+  expect_same(kept_points(checkpoint, 99), some_points(30));
+}
+
+// Of a run that forgets: where a byte anywhere in the second of three parts is wrong, what can be read is as it was,
+// and what cannot is no longer there.
+TEST(KeptRows, DamagedOnesAreForgotten) {
+  const ScratchFolder folder;
+  const auto pairs = folder / "pairs", points = folder / "points";
+  {
+    Checkpoint checkpoint(pairs, kKey);
+    for (const std::uint32_t first : {0, 100, 200}) keep_pairs(checkpoint, some_rows(first, first + 100));
+  }
+  {
+    Checkpoint checkpoint(points, kKey);
+    for (const std::uint32_t first : {0, 100, 200}) keep_points(checkpoint, some_points(first + 100), first);
+  }
+  std::map<std::filesystem::path, std::map<std::filesystem::path, std::string>> whole;
+  for (const auto& path : {pairs, points}) {
+    for (const auto& part : std::filesystem::directory_iterator(path)) whole[path][part.path()] = contents(part.path());
+  }
+  std::map<std::size_t, std::size_t> pairs_left, points_left;
+  for (const auto& [path, parts] : whole) {
+    const std::string bytes = parts.at(path / "part-000002.h5");
+    for (std::size_t at = 0; at < bytes.size(); at += 197) {
+      create_directory(path);  // that of a checkpoint in which nothing is left is gone
+      for (const auto& [part, of_part] : parts) put(part, of_part);
+      put(path / "part-000002.h5", flipped(bytes, at));
+      Checkpoint checkpoint(path, kKey, Checkpoint::OtherRun::forgotten);
+      if (path == pairs) {
+        ++pairs_left[rows_in(checkpoint).size()];
+      } else {
+        const PointRows found = kept_points(checkpoint, 99);
+        if (found.F.rows() > 0) expect_same(found, some_points(static_cast<std::uint32_t>(found.F.rows())));
+        EXPECT_EQ(checkpoint.parts().size(), found.F.rows() / 100);
+        ++points_left[found.F.rows()];
+      }
+    }
+  }
+  // Nothing where the part could not be opened, all where the byte has no meaning.
+  for (const auto& [left, times] : pairs_left) EXPECT_TRUE(left == 0 || left == 200 || left == 300) << left;
+  for (const auto& [left, times] : points_left) EXPECT_TRUE(left == 0 || left == 100 || left == 300) << left;
+  EXPECT_GT(pairs_left[200], pairs_left[0] + pairs_left[300]);
+  EXPECT_GT(points_left[100], points_left[0] + points_left[300]);
 }
 
 constexpr std::uint32_t kRows = 60, kRowsAtOnce = 3;
@@ -323,7 +293,7 @@ void run_and_kill(const std::filesystem::path& path, std::size_t after, useconds
   EXPECT_TRUE(WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 0));
 }
 
-TEST(Checkpoint, NoReportedRowIsLostByKillingTheRun) {
+TEST(KeptRows, NoReportedRowIsLostByKillingTheRun) {
   const ScratchFolder folder;
   const auto path = folder / "a.parts";
   std::set<std::uint32_t> reported;
@@ -331,7 +301,7 @@ TEST(Checkpoint, NoReportedRowIsLostByKillingTheRun) {
   for (useconds_t round = 0; round < 12; ++round) {
     run_and_kill(path, 3, 311 * round, reported);
     // A row that is on the disk but was not reported any more counts as finished by the next run, and is not reported.
-    const Checkpoint checkpoint(path, kKey);
+    Checkpoint checkpoint(path, kKey);
     const std::set<std::uint32_t> saved = rows_in(checkpoint);
     for (const std::uint32_t row : reported) EXPECT_TRUE(saved.contains(row)) << row;
     EXPECT_LE(saved.size(), reported.size() + kRowsAtOnce * (round + 1));

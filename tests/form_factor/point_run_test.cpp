@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "src/form_factor/kept_rows.h"
 #include "src/scene/reader.h"
 #include "src/visibility/exact_visibility.h"
-#include "tests/output/scratch_folder.h"
+#include "tests/output/damage.h"
 
 namespace exitance {
 namespace {
@@ -60,6 +61,34 @@ TEST_F(PointRunTest, GoesOnWhereItWasStoppedWithTheSameBits) {
   expect_same(last.rows, whole);
   expect_same(run(1000, nullptr).rows, whole);
   EXPECT_EQ(run(1000, &checkpoint).resumed, n) << "all are kept";
+}
+
+TEST_F(PointRunTest, ComputesRowsAgainFromADamagedPartOn) {
+  const std::size_t n = mesh_.elements.size();
+  std::filesystem::path second;
+  {
+    Checkpoint checkpoint(scratch_ / "parts", "key", Checkpoint::OtherRun::forgotten);
+    EXPECT_FALSE(run(3, &checkpoint).complete);
+    ASSERT_EQ(checkpoint.parts().size(), 3u);
+    second = checkpoint.parts()[1];
+  }
+  const std::string bytes = contents(second);
+  put(second, flipped(bytes, bytes.size() / 2));
+  Checkpoint checkpoint(scratch_ / "parts", "key", Checkpoint::OtherRun::forgotten);
+  const PointRun run_again = run(1000, &checkpoint);
+  EXPECT_EQ(run_again.resumed, 256u);
+  expect_same(run_again.rows, point_rows(visibility_, 0, n));
+  EXPECT_EQ(kept_points(checkpoint, run_again.rows.F.columns).F.rows(), n);
+}
+
+TEST_F(PointRunTest, SavesTheLastRowsOnlyWhereSomeWereSaved) {
+  PointRunOptions seldom{.block_seconds = 1e9};
+  Checkpoint checkpoint(scratch_ / "parts", "key");
+  EXPECT_TRUE(run_points(visibility_, seldom, &checkpoint).complete);
+  EXPECT_TRUE(checkpoint.parts().empty());
+  EXPECT_FALSE(run(1, &checkpoint).complete);
+  EXPECT_TRUE(run_points(visibility_, seldom, &checkpoint).complete);
+  EXPECT_EQ(kept_points(checkpoint, 0).F.rows(), mesh_.elements.size());
 }
 
 }  // namespace

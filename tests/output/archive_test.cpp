@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "tests/output/damage.h"
+#include "tests/output/error_of.h"
 
 namespace exitance {
 namespace {
@@ -63,16 +64,6 @@ Contents read(const std::filesystem::path& path) {
   const ArchiveReader file(path, kKind);
   return {file.doubles("reals"), file.uint64s("counts"), file.uint32s("indices"),
           file.uint8s("marks"),  file.texts("names"),    file.text("text")};
-}
-
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Archive, ComesBackBitForBit) {

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "src/output/leftovers.h"
 #include "src/scene/input_error.h"
 #include "tests/output/scratch_folder.h"
 
@@ -36,13 +37,15 @@ TEST(ResultFolder, DraftsOfKilledProcessesAreRemoved) {
   const pid_t dead = fork();
   if (dead == 0) _exit(0);
   waitpid(dead, nullptr, 0);
-  const auto of_the_dead = scratch / (".draft." + std::to_string(dead)), of_the_living = scratch / ".draft.1";
-  create_directory(of_the_dead);
-  create_directory(of_the_living);
+  const auto of_the_dead = scratch / (".draft." + name_of_process(dead));
+  const auto of_the_living = scratch / (".draft." + name_of_process(1));
+  const auto of_another_host = scratch / (".draft.x" + name_of_process(dead));
+  for (const auto& draft : {of_the_dead, of_the_living, of_another_host}) create_directory(draft);
   write(of_the_dead / "a", "half");
   const ResultFolder results(scratch / "");
   EXPECT_FALSE(exists(of_the_dead));
   EXPECT_TRUE(exists(of_the_living));
+  EXPECT_TRUE(exists(of_another_host));
 }
 
 TEST(ResultFolder, KeepsEarlierResultsUntilPublished) {

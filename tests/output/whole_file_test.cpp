@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "src/output/leftovers.h"
 #include "src/scene/input_error.h"
 #include "tests/output/scratch_folder.h"
 
@@ -56,10 +57,11 @@ TEST(WholeFile, WhatKilledProcessesLeftOfItIsRemoved) {
   if (child == 0) _exit(0);
   siginfo_t ended;
   waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT);
-  const std::string dead = std::to_string(child);
+  const std::string dead = name_of_process(child), living = name_of_process(1);
   const auto leave = [&] { std::ofstream(folder / ("a.txt." + dead + ".part")) << "half"; };
   leave();
-  for (const char* name : {"a.txt.1.part", "a.txt.x.part", "a.txt..part"}) std::ofstream(folder / name);
+  for (const std::string& name : {living, dead + "x", std::string()})
+    std::ofstream(folder / ("a.txt." + name + ".part"));
   for (const std::string name : {"a.txt.x", "b.txt."}) std::ofstream(folder / (name + dead + ".part"));
   write_whole_file(folder / "a.txt", kText);
   EXPECT_FALSE(exists(folder / ("a.txt." + dead + ".part"))) << "nobody has taken notice of its end";
@@ -67,7 +69,7 @@ TEST(WholeFile, WhatKilledProcessesLeftOfItIsRemoved) {
   leave();
   write_whole_file(folder / "a.txt", kText);
   EXPECT_FALSE(exists(folder / ("a.txt." + dead + ".part")));
-  EXPECT_EQ(folder.files(), 6u) << "those of living processes, of other files and what is no draft";
+  EXPECT_EQ(folder.files(), 6u) << "those of living processes, of other hosts and files, and what is no draft";
 }
 
 TEST(WholeFile, AMissingFolderIsNamed) {

@@ -5,11 +5,13 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
+#include <string>
 
 #include "src/solve/error_bound.h"
 #include "src/solve/gather.h"
-#include "tests/output/scratch_folder.h"
+#include "tests/output/damage.h"
 #include "tests/solve/random_enclosure.h"
 
 namespace exitance {
@@ -229,19 +231,30 @@ TEST(Shoot, GoesOnFromWhatWasKeptWithTheSameBits) {
   }
 }
 
-TEST(Shoot, AStateOfAnotherMeshIsRefused) {
+TEST(Shoot, AStateThatIsOfNoUseIsForgotten) {
+  const RadiositySystem system = random_enclosure(40, 1, 0.5, 1.0, 1), other = random_enclosure(11, 1, 0.5, 1.0, 1);
+  const FormFactorMatrix columns = transpose(system.F), other_columns = transpose(other.F);
+  const ShootSolution whole = shoot(one_element_each(system), column_of(columns));
   const ScratchFolder folder;
-  Checkpoint checkpoint(folder / "state", "key");
-  for (const std::size_t patches : {10, 11}) {
-    const RadiositySystem system = random_enclosure(patches, 1, 0.5, 1.0, 1);
-    const FormFactorMatrix columns = transpose(system.F);
-    const ShootOptions options{.checkpoint = &checkpoint, .save_seconds = 0};
-    if (patches == 10) {
-      shoot(one_element_each(system), column_of(columns), options);
-    } else {
-      EXPECT_THROW(shoot(one_element_each(system), column_of(columns), options), DamagedFile);
-    }
+  std::filesystem::path part;
+  {
+    Checkpoint checkpoint(folder / "state", "key");
+    shoot(one_element_each(other), column_of(other_columns), {.checkpoint = &checkpoint, .save_seconds = 0});
+    expect_same(shoot(one_element_each(system), column_of(columns), {.checkpoint = &checkpoint, .save_seconds = 0}),
+                whole);
+    part = checkpoint.parts().at(0);
   }
+  const std::string bytes = contents(part);
+  std::size_t forgotten = 0, flips = 0;
+  for (std::size_t at = 0; at < bytes.size(); at += 97) {
+    create_directories(part.parent_path());
+    put(part, flipped(bytes, at));
+    Checkpoint checkpoint(folder / "state", "key", Checkpoint::OtherRun::forgotten);
+    expect_same(shoot(one_element_each(system), column_of(columns), {.checkpoint = &checkpoint}), whole);
+    forgotten += checkpoint.parts().empty();
+    ++flips;
+  }
+  EXPECT_GT(forgotten, flips / 2);
 }
 
 TEST(Shoot, NothingEmitsNothingIsShot) {
