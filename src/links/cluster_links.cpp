@@ -59,7 +59,8 @@ ClusterLinks::Refinement ClusterLinks::refine(std::span<const double> luminance,
       const std::uint32_t r = clusters_.roots_of(clusters[c]).front();
       const Root& root = tree_->root(r);
       most_[c] = *std::ranges::max_element(luminance.subspan(root.node_first, root.node_count));
-      emitted_[c] = clusters_.place(r).area * luminance[root.node_first];  // of what is open, as both are
+      // At most: of what is covered, too, so that without threshold what is wholly covered is linked like the rest.
+      emitted_[c] = tree_->node(root.node_first).area * luminance[root.node_first];
     } else {
       const std::uint32_t a = clusters[c].first_child, b = a + 1;
       most_[c] = std::max(most_[a], most_[b]);
