@@ -89,7 +89,9 @@ std::string summary(const Report& r) {
        fmt::format("{} ({} {} measured, {} in contact)",
                    number_or(r.closure_max_defect, r.measured_points > 0 ? "none, the scene is open" : "not measured"),
                    r.measured_points, points ? "sample points" : "elements", r.covered_points));
-  const std::string quadrature = points ? " (quadrature of sample points)" : "";
+  const std::string quadrature = r.links  ? " (thresholds and points of links)"
+                                 : points ? " (quadrature of sample points)"
+                                          : "";
   line("reciprocity defect", number_or(r.reciprocity_max_defect, "not measured") + quadrature);
   line("energy balance defect", number_or(r.energy_balance_defect, "not measured") + quadrature);
   if (r.rays) {
@@ -97,8 +99,9 @@ std::string summary(const Report& r) {
                              number_or(r.rays->mean_standard_error, "unknown")));
     line("error bound", fmt::format("none, as rays prove nothing (solver {:.3g} of B max)", r.solver_error_bound));
   } else {
-    line("error bound", fmt::format("{:.3g} of B max (solver {:.3g}, form factors {:.3g})", r.error_bound,
-                                    r.solver_error_bound, r.form_factor_error));
+    line("error bound",
+         fmt::format("{:.3g} of B max (solver {:.3g}, form factors {:.3g}){}", r.error_bound, r.solver_error_bound,
+                     r.form_factor_error, r.links ? "; over these links, what they miss is not in it" : ""));
   }
   line("B min, B max", fmt::format("{:.12g}, {:.12g} {}", r.B_min, r.B_max, r.unit));
   return text;
