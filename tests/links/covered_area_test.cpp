@@ -147,7 +147,8 @@ TEST(CoveredArea, IsLeftOutInAFurnace) {
     }
     HierarchicalOptions solving;
     solving.links = options;
-    EXPECT_LT(solve_by_links(c.scene, solving, {}).solution.energy_balance_defect.value(), 1e-9);
+    const std::vector<std::uint8_t> moves(c.scene.objects.size());
+    EXPECT_LT(solve_by_links(c.scene, solving, moves).solution.energy_balance_defect.value(), 1e-9);
   }
 }
 
