@@ -56,7 +56,7 @@ struct SolveOptions {
   /// the same work is begun again; empty: none. Rows of receivers `area` by rays are not.
   std::filesystem::path checkpoint = {};
   std::string key = {};   ///< what it all depends on, as a Checkpoint's; with another one the work begins anew
-  double save_every = 2;  ///< seconds after which it is saved, or more where saving takes long (SavePace)
+  double save_every = 30;  ///< seconds after which it is saved, or more where saving takes long (SavePace)
   std::function<void(const std::string&)> warn = {};  ///< told of what was kept and is of no use; may be empty
 };
 
