@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "experiments/csv_table.h"
 #include "experiments/experiment_options.h"
 #include "experiments/finer_radiosity.h"
+#include "experiments/goal.h"
 #include "experiments/plot_note.h"
 #include "src/dynamic/converged_reference.h"
 #include "src/dynamic/picture.h"
@@ -36,8 +36,6 @@ struct Race {
   std::vector<std::string> methods = {};  ///< the contenders wanted; empty: all, and how patches are ranked
 };
 
-/// Errors below which a contender counts as there.
-inline constexpr double kGoal = 0.05;
 /// Of the power of the sources: below it strategy one may propagate, what was gathered first of all.
 inline constexpr double kThreshold = 1e-4;
 
@@ -171,7 +169,7 @@ class RaceTrack {
     ChangeWork work;
     double seconds = 0;
     std::uint64_t shots = 0, redistributions = 0;
-    std::optional<std::pair<std::uint64_t, double>> there;
+    GoalReached there;
     const auto record = [&] {
       const auto B = session.solution().element_B();
       const DynamicRadiosity& state = session.solution();
@@ -184,8 +182,7 @@ class RaceTrack {
                               fmt::format("{}", work.idle_patch_tests), fmt::format("{:.3g}", seconds)});
       by_time.points.emplace_back(seconds, error.worst_1_percent);
       by_shots.points.emplace_back(static_cast<double>(shots), error.worst_1_percent);
-      if (error.worst_1_percent > kGoal) there.reset();
-      if (error.worst_1_percent <= kGoal && !there) there = {shots, seconds};
+      there.record(error.worst_1_percent, shots, seconds);
       if (std::ranges::find(race_.pictured, shots) != race_.pictured.end() &&
           (name == "scratch" || name == "strategy 1 estimated"))
         draw(state, B, fmt::format("{}_{}", name == "scratch" ? "scratch" : "redistribution", shots));
@@ -213,8 +210,7 @@ class RaceTrack {
       error = record();
     }
     fmt::print(stderr, "{}: {} shots, {:.3g} s, error on the 1 % {:.3g}\n", name, shots, seconds, error);
-    summary.rows.push_back({name, there ? fmt::format("{}", there->first) : "none",
-                            there ? fmt::format("{:.3g}", there->second) : "none"});
+    summary.rows.push_back({name, there.shots(), there.seconds()});
     over_time.series.push_back(by_time);
     over_shots.series.push_back(by_shots);
     write();

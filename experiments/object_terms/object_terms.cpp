@@ -11,6 +11,7 @@
 
 #include "experiments/csv_table.h"
 #include "experiments/experiment_options.h"
+#include "experiments/goal.h"
 #include "src/dynamic/converged_reference.h"
 #include "src/dynamic/edit_session.h"
 #include "src/output/run_clock.h"
@@ -20,7 +21,6 @@
 namespace exitance {
 namespace {
 
-constexpr double kGoal = 0.05;
 /// [s] of the processor.
 constexpr std::array kBudgets{0.005, 0.05, 0.5};
 
@@ -94,18 +94,6 @@ Place furnished(bool reduced) {
   return place;
 }
 
-/// When an error is, and stays, below the goal.
-struct Since {
-  std::optional<std::pair<std::uint64_t, double>> at;
-
-  void record(double error, std::uint64_t shots, double seconds) {
-    if (error > kGoal) at.reset();
-    if (error <= kGoal && !at) at = {shots, seconds};
-  }
-  std::string shots() const { return at ? fmt::format("{}", at->first) : "none"; }
-  std::string seconds() const { return at ? fmt::format("{:.3g}", at->second) : "none"; }
-};
-
 class Followed {
  public:
   Followed(const Place& place, double tolerance, CsvTable& table) : table_(table) {
@@ -147,7 +135,7 @@ class Followed {
     const std::uint32_t bands = session.solution().bands();
     const std::vector<std::uint32_t> shadows = most_changed(stood, bands, reference_, was);
     const auto area = [&](std::uint32_t e) { return version.mesh().elements[e].area; };
-    Since all, room;
+    GoalReached all, room;
     std::uint64_t shots = 0, tests = 0, idle = 0;
     Budget one;
     one.shots = 1;

@@ -98,7 +98,8 @@ class Dynamic {
         ->capture_default_str();
     verb.add_option("--budget-shots", budget_shots_, "Most shots a frame after the first; 0: none")
         ->check(whole_number_between(0));
-    verb.add_option("--budget-ms", budget_ms_, "Milliseconds of work a frame after the first, beside its edits themselves; 0: none")
+    verb.add_option("--budget-ms", budget_ms_,
+                    "Milliseconds of work a frame after the first, beside its edits themselves; 0: none")
         ->check(number_between(0));
     verb.add_option("--replay", replay_, "frames.json of an earlier run whose numbers of shots to repeat");
     verb.add_flag(
@@ -132,7 +133,8 @@ class Dynamic {
         "time. error and error_worst_1_percent are eq. 7 of George et al. (1990) over elements, against the converged\n"
         "solution of that frame; null where there is no reference. They are relative to the radiosity that the\n"
         "elements should have: where those that change most go dark, as in a new shadow, error_worst_1_percent can\n"
-        "exceed 1. error_bound is null while a change is in the log and once --no-log has forgotten one: finished then\n"
+        "exceed 1. error_bound is null while a change is in the log and once --no-log has forgotten one: finished "
+        "then\n"
         "says that nothing is left to do, not that B is right. seconds are wall clock, edits included.\n"
         "Each frame is written when it is done; Ctrl-C ends with those so far, exit code 4.\n"
         "Methods by links link all pairs of patches: clusters of patches are for solve --method hierarchical.");
@@ -258,7 +260,7 @@ class Dynamic {
   }
 
   std::string apply(const Event& event, EditSession& session, std::optional<FrameReferences>& references) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     try {
       session.apply(event.edit);
     } catch (const InvalidEdit& wrong) {

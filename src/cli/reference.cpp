@@ -110,8 +110,7 @@ class Reference {
     if (already_there(scene)) return;
 
     const PolygonSoup soup = make_soup(scene);
-    const Manifest build = build_manifest();
-    options_.key = fmt::format("version {}\ncommit {}\ncompiler {}\n", build.version, build.commit, build.compiler);
+    options_.key = build_key();
     options_.checkpoint = checkpoint();
     options_.memory_limit = memory_limit_.bytes();
     options_.stop = [this, start] { return interrupted() || (time_limit_ && seconds_since(start) > *time_limit_); };

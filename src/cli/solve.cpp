@@ -227,8 +227,7 @@ class Solve {
     std::optional<Checkpoint> of_other_methods;
     if (!folder_.empty()) {
       of_other_methods.emplace(unfinished(), key_of(scene) + "work links\n", Checkpoint::OtherRun::forgotten);
-      if (of_other_methods->has_forgotten())
-        print_warning(fmt::format("what was kept in {} was of other work, or damaged, and is removed", unfinished()));
+      if (of_other_methods->has_forgotten()) print_warning(of_other_methods->what_was_forgotten());
     }
     HierarchicalOptions how;
     const DynamicScene given = scene_.read_dynamic();
@@ -287,9 +286,8 @@ class Solve {
   std::string unfinished() const { return (std::filesystem::path(folder_) / kUnfinished).string(); }
 
   std::string key_of(const Scene& scene) const {
-    const Manifest build = build_manifest();
-    std::string key = fmt::format("version {}\ncommit {}\ncompiler {}\nscene {}\nmesh {} {} {}\n", build.version,
-                                  build.commit, build.compiler, scene_hash(scene), options_.mesh.patch_size,
+    std::string key =
+        build_key() + fmt::format("scene {}\nmesh {} {} {}\n", scene_hash(scene), options_.mesh.patch_size,
                                   options_.mesh.elements_per_edge, options_.mesh.small_patch);
     for (const auto& [name, value] : given_options(verb_)) {
       if (std::ranges::find(kOfNoConsequence, name) == kOfNoConsequence.end())

@@ -52,11 +52,8 @@ std::uint64_t PairRun::unreached() const {
 }
 
 std::string pair_run_key(const std::string& scene_hash, double patch_size, const PairOptions& pairs) {
-  const Manifest build = build_manifest();
-  return fmt::format(
-      "version {}\ncommit {}\ncompiler {}\nscene {}\npatch_size {}\ntolerance {}\nrelative {}\npoints {}\n",
-      build.version, build.commit, build.compiler, scene_hash, patch_size, pairs.tolerance, pairs.relative,
-      pairs.points);
+  return build_key() + fmt::format("scene {}\npatch_size {}\ntolerance {}\nrelative {}\npoints {}\n", scene_hash,
+                                   patch_size, pairs.tolerance, pairs.relative, pairs.points);
 }
 
 PairRun run_pairs(const ExchangeScene& scene, const PairRunOptions& options, Checkpoint* checkpoint) {

@@ -90,6 +90,10 @@ Checkpoint::Checkpoint(fs::path folder, std::string key, OtherRun other)
   }
 }
 
+std::string Checkpoint::what_was_forgotten() const {
+  return fmt::format("what was kept in {} was of other work, or damaged, and is removed", folder_.string());
+}
+
 bool Checkpoint::is_sound(const fs::path& part) const {
   try {
     open(part);

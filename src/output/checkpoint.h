@@ -32,6 +32,7 @@ class Checkpoint {
 
   /// Whether parts were found there that `forgotten` removed.
   bool has_forgotten() const { return has_forgotten_; }
+  std::string what_was_forgotten() const;  ///< to be said then
 
   /// What was added so far, in the order in which it was.
   const std::vector<std::filesystem::path>& parts() const { return parts_; }

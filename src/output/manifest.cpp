@@ -30,4 +30,8 @@ Manifest build_manifest() {
   return manifest;
 }
 
+std::string build_key() {
+  return fmt::format("version {}\ncommit {}\ncompiler {}\n", kVersion, kCommit, kCompiler);
+}
+
 }  // namespace exitance

@@ -16,4 +16,8 @@ struct Manifest {
 
 Manifest build_manifest();
 
+/// Of this build, one "name value" a line, for the keys of what is kept to go on with: another build may give other
+/// bits.
+std::string build_key();
+
 }  // namespace exitance

@@ -108,10 +108,7 @@ class SceneSolver {
     if (options_.checkpoint.empty()) return nullptr;
     result_.checkpoint = std::make_shared<Checkpoint>(
         options_.checkpoint, fmt::format("{}work {}\n", options_.key, work), Checkpoint::OtherRun::forgotten);
-    if (result_.checkpoint->has_forgotten() && options_.warn) {
-      options_.warn(fmt::format("what was kept in {} was of other work, or damaged, and is removed",
-                                options_.checkpoint.string()));
-    }
+    if (result_.checkpoint->has_forgotten() && options_.warn) options_.warn(result_.checkpoint->what_was_forgotten());
     return result_.checkpoint.get();
   }
 

@@ -55,7 +55,7 @@ struct SolveOptions {
   /// Folder in which finished rows of form factors, or the state of shooting without a matrix, are kept, and found when
   /// the same work is begun again; empty: none. Rows of receivers `area` by rays are not.
   std::filesystem::path checkpoint = {};
-  std::string key = {};   ///< what it all depends on, as a Checkpoint's; with another one the work begins anew
+  std::string key = {};    ///< what it all depends on, as a Checkpoint's; with another one the work begins anew
   double save_every = 30;  ///< seconds after which it is saved, or more where saving takes long (SavePace)
   std::function<void(const std::string&)> warn = {};  ///< told of what was kept and is of no use; may be empty
 };
@@ -75,8 +75,8 @@ struct SceneSolution {
   /// Of each band, what shooting that was ended early had still to spread (ambient_estimate): for display only, where
   /// B + ρ · ambient is shown. Empty otherwise.
   std::vector<double> ambient;
-  bool stopped =
-      false;  ///< max_shots or `stop` ended the work before the tolerance was reached and all rows were known
+  /// max_shots or `stop` ended the work before the tolerance was reached and all rows were known.
+  bool stopped = false;
 
   Receivers receivers = Receivers::points;
   std::optional<RayOptions> rays;  ///< as asked
