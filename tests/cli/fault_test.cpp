@@ -195,8 +195,7 @@ TEST_P(LongWork, IsWholeOrNotThereAfterAKillAtAnyMoment) {
   std::filesystem::create_directory(folder);
   std::mt19937 random(7);
   for (int k = 0; k < 3; ++k) {
-    const double after = seconds_ * std::uniform_real_distribution(0.1, 0.9)(random);
-    run(command(GetParam(), folder), "timeout -s KILL " + std::to_string(after));
+    run_and_kill(command(GetParam(), folder), seconds_ * std::uniform_real_distribution(0.1, 0.9)(random));
     expect_nothing_half_written(folder);
   }
   const Outcome last = run(command(GetParam(), folder));

@@ -31,6 +31,12 @@ inline Outcome run(const std::string& arguments, const std::string& before = "")
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(out), contents(err)};
 }
 
+/// Has it run for so many seconds at most, kills it, and waits until it is dead (which `timeout` would do only in the
+/// foreground: else the signal that it sends ends itself, too).
+inline void run_and_kill(const std::string& arguments, double seconds) {
+  run(arguments, "timeout --foreground -s KILL " + std::to_string(seconds));
+}
+
 inline std::string data(const std::string& name) {
   return EXITANCE_SOURCE_DIR "/data/" + name;
 }

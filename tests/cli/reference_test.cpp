@@ -50,8 +50,8 @@ TEST_F(ReferenceTest, TheFurnaceIsConstantAndSavedWithItsManifest) {
 TEST_F(ReferenceTest, GoesOnAfterBeingKilledWithTheSameBits) {
   const std::string command = "reference " + data("box_on_floor.toml") + " --error 1.5e-2 --save-every 0 --threads 2 -o ";
   ASSERT_EQ(run(command + path("whole.h5")).code, 0);
-  run(command + path("killed.h5"), "timeout -s KILL 0.5");
-  run(command + path("killed.h5"), "timeout -s KILL 1");
+  run_and_kill(command + path("killed.h5"), 0.5);
+  run_and_kill(command + path("killed.h5"), 1);
   ASSERT_EQ(run("reference " + data("box_on_floor.toml") + " --error 1.5e-2 --threads 1 -o " + path("killed.h5")).code,
             0);
   EXPECT_FALSE(exists("killed.h5.parts")) << "even if it was killed while it removed them";
