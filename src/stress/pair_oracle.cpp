@@ -190,13 +190,17 @@ PairOracle::PairOracle(const Question& given, Care care) : care_(care) {
   if (of_source) source_ = facets_of(question.source);
 }
 
-/// What of a piece contacts leave. They are taken out of the hiders, but for whole solids that stand on the piece.
+/// What of a piece contacts leave. They are taken out of the hiders, but for whole solids that stand on the piece; so is
+/// what lies behind it.
 std::vector<ExactLoop> PairOracle::uncovered(const Piece& piece, std::vector<Hider>& hiders,
                                              long double& rounding) const {
   std::vector<ExactLoop> left{piece.loop};
   const double near = kContact * size_;
   std::erase_if(hiders, [&](const Hider& hider) {
-    bool is_contact = false;
+    // A solid behind the piece hides what little of it rises in front, by rounding, and no more.
+    bool is_contact = std::ranges::all_of(hider.faces, [&](const Piece& face) {
+      return std::ranges::all_of(face.loop, [&](const ExactPoint& p) { return height(piece.plane, p) <= near; });
+    });
     for (const Piece& face : hider.faces) {
       if (!is_within(piece.plane, face.loop, near)) continue;
       const bool faces_it = face.plane.normal * piece.plane.normal < 0;

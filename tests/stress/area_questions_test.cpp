@@ -13,6 +13,7 @@
 #include "src/stress/shaft_question.h"
 #include "src/stress/stage.h"
 #include "src/stress/stress_run.h"
+#include "src/stress/visibility_oracle.h"
 
 namespace exitance {
 namespace {
@@ -56,6 +57,29 @@ TEST(AreaQuestions, NothingIsWrongOfPairs) {
   EXPECT_EQ(total.questions, 6u);
   EXPECT_EQ(total.wrong + total.unjudged, 0u);
   EXPECT_LT(total.worst_margin, 1e-3);
+}
+
+/// Solids behind a source, whose tops share its plane but for rounding.
+TEST(AreaQuestions, WhatRisesInFrontOfASourceByRoundingIsCutOffOnce) {
+  const QuestionFamily& family = *std::ranges::find(question_families(), "coplanar_contact", &QuestionFamily::name);
+  const std::string name = "6/coplanar_contact/ulp/2";
+  Random random(name), of_receiver(name + "/receiver");
+  const Question question = near_one(draw_area_question(family, departures()[1], random, of_receiver).question);
+  const Loop& receiver = question.receiver.outer;
+  const Vec3 u = receiver[1] - receiver[0], v = receiver[3] - receiver[0];
+  PointQuestion at = question;
+  at.normal = cross(u, v);
+  long double mean = 0;
+  constexpr int kSide = 8;
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      at.point = receiver[0] + (i + 0.5) / kSide * u + (j + 0.5) / kSide * v;
+      mean += oracle_form_factor(at).F / (kSide * kSide);
+    }
+  }
+  const PairOracleAnswer pair = oracle_pair_form_factors(question, Care::sampled);
+  EXPECT_LE(pair.error, 6e-4L);
+  EXPECT_LE(std::fabs(pair.F - mean), pair.error + 2e-4L) << "which the points may be off";
 }
 
 /// Says of each class that it is another.
