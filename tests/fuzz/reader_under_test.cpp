@@ -65,7 +65,7 @@ extern "C" const char* __lsan_default_suppressions() {
 }
 
 std::span<const ReaderUnderTest> readers_under_test() {
-  static const std::array kReaders{ReaderUnderTest{"obj", {"room.obj"}, "a.obj", scene},
+  static const std::array kReaders{ReaderUnderTest{"obj", {"room.obj", "libraries.obj"}, "a.obj", scene},
                                    ReaderUnderTest{"mtl", {"room.mtl"}, "room.mtl", materials},
                                    ReaderUnderTest{"ply", {"quad.ply", "binary.ply"}, "a.ply", scene},
                                    ReaderUnderTest{"off", {"tetrahedron.off"}, "a.off", scene},
