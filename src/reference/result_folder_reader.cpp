@@ -63,7 +63,7 @@ std::vector<Number> numbers(const fs::path& path, const Tree& array) {
     if (at == end) return values;
     Number value{};
     const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc())
+    if (error != std::errc() || !std::isfinite(value))
       refuse(path, fmt::format("array \"{}\" has something that is no number", array.get("<xmlattr>.Name", "")));
     values.push_back(value);
     at = next;
