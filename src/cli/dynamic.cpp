@@ -217,7 +217,7 @@ class Dynamic {
   }
 
   void finish() {
-    print_results(json_ ? frames_.dump(1) + '\n' : summary_);
+    print_results(json_ ? frames_.dump(1) + '\n' : printable(summary_));
     if (partial_) {
       print_message(frames_.empty() ? "stopped before the first frame was done; nothing was saved"
                                     : fmt::format("stopped after {} frame{}; the partial result was saved",

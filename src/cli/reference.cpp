@@ -123,7 +123,8 @@ class Reference {
   fs::path checkpoint() const { return file_ + ".parts"; }
 
   bool already_there(const Scene& scene) const {
-    if (!fs::exists(file_)) return false;
+    std::error_code ignored;
+    if (!fs::exists(file_, ignored)) return false;
     const SolutionRecord there = read_solution_archive(file_);
     const bool same_version = Json::parse(there.manifest).value("version", "") == build_manifest().version;
     if (there.scene_hash != scene_hash(scene) || !same_version || there.error.total > options_.error) return false;

@@ -45,7 +45,8 @@ std::string key_of(const EditSession& session, const FrameReferences& references
 
 ReferenceStore::ReferenceStore(std::filesystem::path file) : file_(std::move(file)) {
   if (file_.empty()) return;
-  if (!std::filesystem::exists(file_)) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file_, ignored)) {
     refuse_unwritable();
     return;
   }

@@ -116,7 +116,8 @@ class Stress {
           folder->draft() / "stress.svg", report, contenders_,
           fmt::format("seed {}; exitance {} ({})", options_.seed, build.version, build.commit.substr(0, 7)));
       folder->publish();
-      if (report.complete) std::filesystem::remove(unfinished());
+      std::error_code ignored;
+      if (report.complete) std::filesystem::remove(unfinished(), ignored);
     }
     print_results(json_ ? to_json(summary) : printable(in_words(summary)));
     if (summary.total().wrong + summary.total().broken() > 0) throw CLI::RuntimeError(check_failed);

@@ -55,7 +55,8 @@ StressTally tally_of(const Json& json) {
 }  // namespace
 
 std::optional<StressState> read_stress_state(const std::filesystem::path& file, const StressKey& key) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return std::nullopt;
   const Json json = read_json(file.string());
   try {
     const StressKey there = json.at("key");

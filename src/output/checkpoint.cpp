@@ -72,12 +72,13 @@ Checkpoint::Checkpoint(fs::path folder, std::string key, OtherRun other)
     : folder_(std::move(folder)), key_(std::move(key)), other_(other), lock_(folder_) {
   std::vector<std::pair<std::uint64_t, fs::path>> found;
   std::vector<fs::path> drafts;
-  for (const auto& entry : fs::directory_iterator(folder_)) {
-    const std::string name = entry.path().filename().string();
-    if (const auto number = part_number(name)) found.emplace_back(*number, entry.path());
-    if (is_draft(name)) drafts.push_back(entry.path());
+  std::error_code failed, ignored;
+  for (fs::directory_iterator entry(folder_, failed), end; !failed && entry != end; entry.increment(failed)) {
+    const std::string name = entry->path().filename().string();
+    if (const auto number = part_number(name)) found.emplace_back(*number, entry->path());
+    if (is_draft(name)) drafts.push_back(entry->path());
   }
-  std::error_code ignored;
+  if (failed) throw InputError(folder_.string(), 0, fmt::format("cannot be read ({}); remove it", failed.message()));
   for (const fs::path& draft : drafts) fs::remove(draft, ignored);
   std::ranges::sort(found);
   for (auto& [number, path] : found) {

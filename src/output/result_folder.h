@@ -25,6 +25,8 @@ class ResultFolder {
   void publish() const;
 
  private:
+  void remove_draft() const;  ///< and the folders that were made for it, unless something is in them
+
   std::filesystem::path folder_, draft_;
   std::vector<std::filesystem::path> made_;  ///< by us, the innermost first
 };

@@ -409,8 +409,9 @@ void clear_finished_checkpoint(const std::filesystem::path& checkpoint) {
   std::error_code ignored;
   if (std::filesystem::exists(mark, ignored)) {
     std::vector<std::filesystem::path> levels;
-    for (const auto& entry : std::filesystem::directory_iterator(checkpoint)) {
-      if (entry.is_directory()) levels.push_back(entry.path());
+    for (std::filesystem::directory_iterator entry(checkpoint, ignored), end; !ignored && entry != end;
+         entry.increment(ignored)) {
+      if (std::error_code no_folder; entry->is_directory(no_folder)) levels.push_back(entry->path());
     }
     for (const std::filesystem::path& level : levels) Checkpoint(level, "").remove();
     std::filesystem::remove(mark, ignored);

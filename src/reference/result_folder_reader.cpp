@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <system_error>
 
 #include "src/reference/solution_record.h"
@@ -22,9 +25,15 @@ using Tree = boost::property_tree::ptree;
   throw InputError(path.string(), 0, what + "; solve the scene again");
 }
 
+/// A file of ours has some fifty; the parser goes into elements within elements by recursion.
+constexpr std::ptrdiff_t kMostTags = 1000;
+
 Tree read_xml(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(path.string(), 0, "cannot be read; name a folder that `exitance solve` has written");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path.string(), 0, "cannot be read; name a folder that `exitance solve` has written");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (std::ranges::count(text, '<') > kMostTags) refuse(path, fmt::format("has more than {} tags", kMostTags));
+  std::istringstream stream(text);
   Tree tree;
   try {
     boost::property_tree::read_xml(stream, tree);
@@ -54,7 +63,7 @@ std::vector<Number> numbers(const fs::path& path, const Tree& array) {
     if (at == end) return values;
     Number value{};
     const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc())
+    if (error != std::errc() || !std::isfinite(value))
       refuse(path, fmt::format("array \"{}\" has something that is no number", array.get("<xmlattr>.Name", "")));
     values.push_back(value);
     at = next;

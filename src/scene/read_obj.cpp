@@ -106,14 +106,14 @@ class ObjReader {
 
   void read_libraries(std::string_view names) {
     // One file whose name holds blanks, or several files.
-    if (std::filesystem::exists(folder_ / names)) return read_library(std::string(names));
+    if (is_file(folder_ / names)) return read_library(std::string(names));
     const std::uint32_t line = text_.line();
     TextCursor words(text_.file(), names);
     for (std::string_view name = words.token_across_lines(); !name.empty(); name = words.token_across_lines()) {
-      if (!std::filesystem::exists(folder_ / name)) {
+      if (!is_file(folder_ / name)) {
         list_.warnings.push_back(
-            fmt::format("{}:{}: the material library {} is missing; put it there or delete this line", text_.file(),
-                        line, (folder_ / name).string()));
+            fmt::format("{}:{}: the material library {} is missing or no file; put it there or delete this line",
+                        text_.file(), line, (folder_ / name).string()));
         continue;
       }
       read_library(std::string(name));

@@ -390,9 +390,9 @@ class SceneFile {
 
   Scene read_mesh_part(const TomlTable& table, const std::string& mesh, const std::string& name) const {
     const std::filesystem::path file = path_.parent_path() / mesh;
-    if (!std::filesystem::exists(file)) {
+    if (!is_file(file)) {
       table.fail(table.line_of("mesh"),
-                 fmt::format("the mesh {} is missing; paths are relative to this file", file.string()));
+                 fmt::format("the mesh {} is missing or no file; paths are relative to this file", file.string()));
     }
     if (const std::string extension = lower_extension(file); extension == ".toml" || extension == ".vs3") {
       table.fail(table.line_of("mesh"),

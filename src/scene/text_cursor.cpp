@@ -41,6 +41,11 @@ std::string read_bytes(const std::filesystem::path& path) {
   return bytes;
 }
 
+bool is_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
 TextCursor::TextCursor(std::string file, std::string_view text) : file_(std::move(file)), text_(text) {}
 
 bool TextCursor::next_line() {

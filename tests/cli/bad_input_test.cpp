@@ -82,6 +82,22 @@ TEST_F(BadInputTest, Folders) {
   expect(3, "generate furnished-room --polygons 500 -o " + file + "/below.obj", file);
 }
 
+TEST_F(BadInputTest, NamesThatAreTooLongOrNoFiles) {
+  const std::string cube = data("furnace_cube.toml"), long_name(300, 'x');
+  expect_of_scene(3, long_name + ".obj", "no such file");
+  expect_of_scene(3, write("long.toml", "[[object]]\nmesh = \"" + long_name + ".obj\"\n"), "long.toml:2: ");
+  expect_of_scene(3, write("device.toml", "[[object]]\nmesh = \"/dev/zero\"\n"), "device.toml:2: ");
+  expect(3, "solve " + cube + " -o " + long_name, "too long");
+  expect(3, "reference " + cube + " -o " + long_name + ".h5", "too long");
+  const Outcome outcome =
+      run("dynamic " + cube + " -o " + (scratch / "frames").string() + " --references " + long_name);
+  EXPECT_EQ(outcome.code, 3);  // after a warning that nothing happens in the scene
+  EXPECT_THAT(outcome.err, testing::HasSubstr("too long"));
+  expect(3, "stress --count 1 -o " + long_name, "too long");
+  expect(3, "cases " + long_name, "cannot be read");
+  expect(3, "diff " + long_name + " " + long_name, "no such file");
+}
+
 TEST_F(BadInputTest, Usage) {
   const std::string cube = data("furnace_cube.toml");
   expect(2, "", "verb");

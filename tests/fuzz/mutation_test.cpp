@@ -33,8 +33,7 @@ class Mutations : public testing::TestWithParam<ReaderUnderTest> {};
 TEST_P(Mutations, AreReadOrRefused) {
   const ReaderUnderTest& reader = GetParam();
   const ScratchFolder folder;
-  std::filesystem::copy(seed_path("room.obj"), folder / "room.obj");
-  std::filesystem::copy(seed_path("room.mtl"), folder / "room.mtl");
+  copy_companions((folder / "").string());
   std::vector<std::string> seeds;
   for (const std::string& name : reader.seeds) seeds.push_back(contents(seed_path(name)));
   for (const std::string& seed : seeds) {

@@ -53,6 +53,7 @@ void matrix(const std::string& path) {
   read_matrix(path);
 }
 
+/// As an archive, or a file of `solve` with its report beside it.
 void solution(const std::string& path) {
   read_solution(path);
 }
@@ -65,7 +66,7 @@ extern "C" const char* __lsan_default_suppressions() {
 }
 
 std::span<const ReaderUnderTest> readers_under_test() {
-  static const std::array kReaders{ReaderUnderTest{"obj", {"room.obj"}, "a.obj", scene},
+  static const std::array kReaders{ReaderUnderTest{"obj", {"room.obj", "libraries.obj"}, "a.obj", scene},
                                    ReaderUnderTest{"mtl", {"room.mtl"}, "room.mtl", materials},
                                    ReaderUnderTest{"ply", {"quad.ply", "binary.ply"}, "a.ply", scene},
                                    ReaderUnderTest{"off", {"tetrahedron.off"}, "a.off", scene},
@@ -75,6 +76,7 @@ std::span<const ReaderUnderTest> readers_under_test() {
                                    ReaderUnderTest{"cases", {"questions.json"}, "a.json", cases},
                                    ReaderUnderTest{"matrix_h5", {"matrix.h5"}, "a.h5", matrix},
                                    ReaderUnderTest{"solution_h5", {"solution.h5"}, "a.h5", solution},
+                                   ReaderUnderTest{"solution_vtp", {"solution.vtp"}, "solution.vtp", solution},
                                    ReaderUnderTest{"matrix_csv", {"matrix.csv"}, "a.csv", matrix},
                                    ReaderUnderTest{"matrix_txt", {"matrix.txt"}, "a.txt", matrix}};
   return kReaders;
@@ -82,6 +84,11 @@ std::span<const ReaderUnderTest> readers_under_test() {
 
 std::string seed_path(const std::string& name) {
   return EXITANCE_SOURCE_DIR "/tests/fuzz/seeds/" + name;
+}
+
+void copy_companions(const std::string& folder) {
+  for (const char* name : {"room.obj", "room.mtl", "result.json"})
+    std::filesystem::copy(seed_path(name), folder + "/" + name);
 }
 
 void read_bytes(const ReaderUnderTest& reader, const std::string& folder, const std::string& bytes) {

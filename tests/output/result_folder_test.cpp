@@ -32,6 +32,12 @@ TEST(ResultFolder, PublishesAllAndLeavesNoDraft) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 2);
 }
 
+TEST(ResultFolder, WhatIsMadeBeforeANameIsTooLongIsRemoved) {
+  const ScratchFolder scratch;
+  EXPECT_THROW(ResultFolder(scratch / "new" / "below" / std::string(300, 'x')), InputError);
+  EXPECT_FALSE(exists(scratch / "new"));
+}
+
 TEST(ResultFolder, DraftsOfKilledProcessesAreRemoved) {
   const ScratchFolder scratch;
   const pid_t dead = fork();

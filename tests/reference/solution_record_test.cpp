@@ -85,6 +85,20 @@ TEST(SolutionRecordTest, DamageIsNoticed) {
   EXPECT_GT(noticed, 30u);
 }
 
+TEST(SolutionRecordTest, ElementsWithinElementsWithoutEndAreRefused) {
+  const ScratchFolder scratch;
+  put(scratch / "result.json", R"({"scene": "", "unit": "", "bands": 1, "manifest": {"scene_hash": ""}})");
+  std::string text = "<?xml version=\"1.0\"?>";
+  for (int depth = 0; depth < 1'000'000; ++depth) text += "<a>";
+  put(scratch / "solution.vtp", text);
+  try {
+    read_solution(scratch / "solution.vtp");
+    FAIL();
+  } catch (const InputError& refused) {
+    EXPECT_THAT(refused.what(), HasSubstr("has more than 1000 tags"));
+  }
+}
+
 TEST(SolutionRecordTest, ListsThatMakeNoMeshAreRefused) {
   const ScratchFolder scratch;
   const std::vector<double> points{0, 0, 0, 1, 0, 0, 1, 1, 0}, none, error{0, 0, 0, 0}, normal{0, 0, 1};

@@ -17,6 +17,7 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsSupersetOf;
 using testing::StartsWith;
 
 template <typename T>
@@ -107,6 +108,13 @@ TEST_F(Reader, WhatHasNoMaterialGetsTheDefaultAndAWarning) {
   EXPECT_THAT(scene.materials.at(0).rho, ElementsAre(0.5, 0.5, 0.5));
   EXPECT_THAT(scene.warnings,
               ElementsAre(HasSubstr("gone.mtl"), HasSubstr("1 lines and points"), HasSubstr("'nowhere'")));
+}
+
+TEST_F(Reader, LibrariesThatAreNoFilesAreMissing) {
+  const std::string long_name(300, 'x');  // longer than names may be
+  const Scene scene =
+      read_scene(write("a.obj", "mtllib " + long_name + " /dev/zero .\n" + square("f 1 2 3\n")), {.keep_faults = true});
+  EXPECT_THAT(scene.warnings, IsSupersetOf({HasSubstr(long_name), HasSubstr("/dev/zero"), HasSubstr("a.obj:1: ")}));
 }
 
 TEST_F(Reader, FlipAndTwoSided) {

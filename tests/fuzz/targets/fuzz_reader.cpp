@@ -14,11 +14,11 @@
 
 namespace {
 
-/// A folder in memory where there is one, with the mesh that a material file needs beside it.
+/// A folder in memory where there is one, with what some files need beside them.
 std::string scratch_folder() {
   std::string name = (std::filesystem::exists("/dev/shm") ? "/dev/shm" : "/tmp") + std::string("/exitance_fuzz_XXXXXX");
   const std::string folder = mkdtemp(name.data());
-  std::filesystem::copy(exitance::seed_path("room.obj"), folder + "/room.obj");
+  exitance::copy_companions(folder);
   static const struct Removal {
     std::string folder;
     ~Removal() {
