@@ -36,7 +36,7 @@ class Silence {
   void* data_ = nullptr;
 };
 
-// Where in the library the last failure began, in its words.
+// Why the last call failed: what the system said, or else where in the library that began, in its words.
 std::string reason() {
   std::string text;
   const auto take_first = [](unsigned n, const H5E_error2_t* error, void* to) -> herr_t {
@@ -44,6 +44,12 @@ std::string reason() {
     return 0;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first, &text);
+  // "file write failed: time = …, filename = …, errno = …, error message = '…', buf = …"
+  constexpr std::string_view kOfSystem = "error message = '";
+  if (const std::size_t at = text.find(kOfSystem); at != std::string::npos) {
+    const std::size_t first = at + kOfSystem.size();
+    return text.substr(first, text.find('\'', first) - first);
+  }
   std::ranges::replace(text, '\n', ' ');
   return text.empty() ? "HDF5 gives no reason" : text;
 }
