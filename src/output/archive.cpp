@@ -13,7 +13,7 @@ namespace exitance {
 namespace {
 
 constexpr hsize_t kChunkBytes = 1 << 19;
-constexpr unsigned kDeflate = 1;  // form factors hardly compress; what does, does so at once
+constexpr unsigned kDeflate = 1;  // what compresses does so at once
 constexpr const char* kKind = "kind";
 
 // Failures are told by what we throw, not by what the library prints.
@@ -101,6 +101,7 @@ DamagedFile::DamagedFile(const std::filesystem::path& path, const std::string& w
 
 struct ArchiveWriter::File {
   Draft draft;
+  Packing packing;
   Handle handle = create(draft);
 
   void write(const std::string& name, hid_t type, hsize_t count, const void* values) const {
@@ -110,7 +111,7 @@ struct ArchiveWriter::File {
     const hsize_t in_a_chunk = std::clamp<hsize_t>(kChunkBytes / H5Tget_size(type), 1, std::max<hsize_t>(count, 1));
     require(H5Pset_chunk(layout.id(), 1, &in_a_chunk));
     require(H5Pset_shuffle(layout.id()));
-    require(H5Pset_deflate(layout.id(), kDeflate));
+    if (packing == Packing::small || H5Tget_class(type) != H5T_FLOAT) require(H5Pset_deflate(layout.id(), kDeflate));
     require(H5Pset_fletcher32(layout.id()));
     require(H5Pset_obj_track_times(layout.id(), false));
     Handle dataset(H5Dcreate2(handle.id(), name.c_str(), type, space.id(), H5P_DEFAULT, layout.id(), H5P_DEFAULT),
@@ -126,8 +127,8 @@ struct ArchiveWriter::File {
   }
 };
 
-ArchiveWriter::ArchiveWriter(const std::filesystem::path& path, std::string_view kind)
-    : file_(new File{.draft = Draft(path)}) {
+ArchiveWriter::ArchiveWriter(const std::filesystem::path& path, std::string_view kind, Packing packing)
+    : file_(new File{.draft = Draft(path), .packing = packing}) {
   try {
     write(kKind, kind);
   } catch (...) {
