@@ -1,9 +1,13 @@
 #pragma once
 // What every experiment can be asked for: to write its tables, to be small, to be checked.
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "experiments/csv_table.h"
@@ -14,7 +18,13 @@ class ExperimentOptions {
  public:
   /// Adds the options: where what goes (`written`), what is left of it (`smaller`), what is compared (`checked`).
   ExperimentOptions(CLI::App& app, const std::string& written, const std::string& smaller, const std::string& checked) {
-    app.add_option("-o,--output", out_, "Folder for " + written);
+    app.add_option("-o,--output", out_, "Folder for " + written)->each([](const std::string& folder) {
+      std::error_code failed;
+      std::filesystem::create_directories(folder, failed);
+      if (!failed) return;
+      fmt::print(stderr, "{}: cannot be a folder ({}); name one that is or can be made\n", folder, failed.message());
+      throw CLI::RuntimeError(3);
+    });
     app.add_flag("--reduced", reduced_, smaller);
     app.add_option("--check", expected_, checked);
   }
@@ -24,12 +34,9 @@ class ExperimentOptions {
 
   bool reduced() const { return reduced_; }
 
-  /// Whether tables and plots are wanted, and the folder for them, which is made.
+  /// Whether tables and plots are wanted, and the folder for them, which is there.
   bool writes() const { return !out_.empty(); }
-  std::filesystem::path folder() const {
-    std::filesystem::create_directories(out_);
-    return out_;
-  }
+  std::filesystem::path folder() const { return out_; }
 
   /// The exit code: what is wrong with the run, by the table that is expected, is printed. wrong(expected): lines.
   template <class Wrong>

@@ -183,7 +183,7 @@ class Dynamic {
     EditSession session(given.scene, options_);
     std::optional<FrameReferences> references;
     if (reference_) references.emplace(given.scene, options_, session.solution(), memory_limit_.bytes());
-    frame(given, session, references, given.events.empty() ? 0 : std::min(0.0, given.events.front().time), {});
+    frame(given, session, references, 0, {});
     std::size_t next = 0;
     while (next < given.events.size() && !stop()) {
       const double time = given.events[next].time;

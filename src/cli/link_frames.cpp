@@ -37,7 +37,7 @@ class Frames {
   LinksEnd follow() {
     const std::vector<Event>& events = given_.events;
     const LinkUpdate built = links_.build(interruption(false));
-    add(events.empty() ? 0 : std::min(0.0, events.front().time), {}, built);
+    add(0, {}, built);
     bool left = false;  // something, by the last update
     stopped_ = stopped_ || built.stopped;
     for (std::size_t next = 0; next < events.size() && !(options_.stop && options_.stop());) {

@@ -17,12 +17,10 @@ struct Link {
   LinkCode code;                  ///< from the pair of whole patches to these nodes
   std::uint32_t source = 0;       ///< node that emits
   std::uint32_t destination = 0;  ///< node that gathers
-  double form_factor = 0;         ///< from destination to source as if nothing stood between
-  /// What of that is seen, 0 … 1, or more where some of the destination is covered and the rest sees more of the source
-  /// than all of it would; of a ghost 1, as it is not looked at.
-  double visibility = 0;
-  /// What it could transfer at most, B F, or B F times a visibility above 1, in luminance [W/m²], as of the last
-  /// exchange of energy; of a ghost the largest of its descendants'.
+  double form_factor = 0;         ///< from what is open of the destination to the source as if nothing stood between
+  double visibility = 0;          ///< what of that is seen, 0 … 1; of a ghost 1, as it is not looked at
+  /// What it could transfer at most, B F, in luminance [W/m²], as of the last exchange of energy; of a ghost the
+  /// largest of its descendants'.
   double energy = 0;
   /// How far it is to the next record of the same level or a higher one: 1 and the number of descendants.
   std::uint32_t next = 1;
@@ -32,8 +30,6 @@ struct Link {
   bool stale = false;    ///< an update left it, and its descendants, as it was, though it may have changed
 
   double transfer() const { return visibility * form_factor; }
-  /// The largest that it could have, by what is known of it.
-  double possible_transfer() const { return visibility > 1 ? transfer() : form_factor; }
   bool shadow() const { return !ghost && visibility == 0; }
 };
 static_assert(sizeof(Link) <= 48);

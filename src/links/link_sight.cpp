@@ -195,12 +195,7 @@ Sight LinkSight::between_alone(std::uint32_t receiver, std::uint32_t source, con
 
 double LinkSight::form_factor(std::uint32_t receiver, std::uint32_t source) {
   const Lap lap(work_.seconds_form_factors);
-  node_points(tree_.node(receiver), per_edge_, points_);
-  return unobstructed_form_factor(receiver, source);
-}
-
-/// From the points as they are set.
-double LinkSight::unobstructed_form_factor(std::uint32_t receiver, std::uint32_t source) {
+  tree_.open_points(receiver, per_edge_, points_);
   const Node &node = tree_.node(receiver), &of = tree_.node(source);
   const Vec3 normal = normalized(obstacles_.soup().facets()[node.facet].plane.normal);
   work_.form_factors += points_.size();
@@ -216,10 +211,8 @@ double LinkSight::unobstructed_form_factor(std::uint32_t receiver, std::uint32_t
 
 double LinkSight::visible_form_factor(std::uint32_t receiver, std::uint32_t source, const Sight& sight) {
   if (sight.state == Sight::State::blocked) return 0;
-  const bool open = sight.state == Sight::State::open;
-  const Lap lap(open ? work_.seconds_form_factors : work_.seconds_visibility);
+  const Lap lap(work_.seconds_visibility);
   tree_.open_points(receiver, per_edge_, points_);
-  if (open) return unobstructed_form_factor(receiver, source);
   const Node& node = tree_.node(receiver);
   const Vec3 normal = obstacles_.soup().facets()[node.facet].plane.normal;
   work_.visibility_tests += points_.size();

@@ -99,11 +99,10 @@ class LinkSight {
   void forget(const Sight& sight) { items_.resize(sight.first); }
   std::span<const std::uint32_t> items(const Sight& sight) const { return {items_.data() + sight.first, sight.count}; }
 
-  /// Mean over the receiver's points of the form factor to the source as if nothing stood between.
+  /// Mean over the receiver's points of the form factor to the source as if nothing stood between. Points are those
+  /// that nothing covers (PatchTree::open_points): what is covered sees nothing and does not count. 0 where all is.
   double form_factor(std::uint32_t receiver, std::uint32_t source);
-  /// The same to what is seen of it, over points that nothing covers (PatchTree::open_points): what is covered sees
-  /// nothing and does not count. 0 where all is. REQUIRES: sight is theirs, among all items, and open only where the
-  /// receiver is covered or form_factor is not asked instead.
+  /// The same to what is seen of it. REQUIRES: sight is theirs, among all items.
   double visible_form_factor(std::uint32_t receiver, std::uint32_t source, const Sight& sight);
 
   const SightWork& work() const { return work_; }
@@ -112,7 +111,6 @@ class LinkSight {
   void set_shaft(std::uint32_t receiver, std::uint32_t source);
   Sight select(std::span<const std::uint32_t> items);
   void keep_inherited(Sight& sight, const Sight& parent);
-  double unobstructed_form_factor(std::uint32_t receiver, std::uint32_t source);
 
   const PatchTree& tree_;
   const Obstacles& obstacles_;

@@ -252,7 +252,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
       forget();
       return copy(old);
     }
-    if (tests_all()) F = sight_.form_factor(ends.receiver, ends.source);
+    if (tests_all() || covered_anew) F = sight_.form_factor(ends.receiver, ends.source);
     changed_ = changed_ || evaluate;
   }
 
@@ -362,11 +362,10 @@ void PairUpdate::add_leaf(const Ends& ends, LinkCode code, double form_factor, c
   link.ghost = false;
   if (link.blocked || form_factor == 0) {
     link.visibility = 0;
-  } else if (!link.open || tree_.node(ends.receiver).covered) {  // the source's own solid may cover it
-    link.visibility = sight_.visible_form_factor(ends.receiver, ends.source, sight) / form_factor;
-    if (!tree_.node(ends.receiver).covered) link.visibility = std::min(1.0, link.visibility);
+  } else if (!link.open) {
+    link.visibility = std::min(1.0, sight_.visible_form_factor(ends.receiver, ends.source, sight) / form_factor);
   }
-  link.energy = energy(ends, link.possible_transfer());
+  link.energy = energy(ends, form_factor);
   ++work_.links_updated;
   out_.push_back(link);
 }

@@ -44,7 +44,7 @@ void for_each_root(const PatchTree& tree, const Work& work) {
 }  // namespace
 
 double judged_form_factor(const Node& receiver, const Node& source, double form_factor) {
-  if (form_factor > 0) return form_factor;
+  if (form_factor > 0 || receiver.open_area == 0) return form_factor;
   const auto middle = [](const Node& node) {
     Vec3 sum;
     for (const Vec3& v : node.loop()) sum = sum + v;
@@ -439,7 +439,7 @@ void set_energies(std::span<Link> links, const PatchTree& tree, std::span<const 
     Link& link = links[i];
     if (!link.ghost) {
       link.energy = luminance[link.source] *
-                    judged_form_factor(tree.node(link.destination), tree.node(link.source), link.possible_transfer());
+                    judged_form_factor(tree.node(link.destination), tree.node(link.source), link.form_factor);
       continue;
     }
     link.energy = 0;

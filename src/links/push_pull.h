@@ -112,7 +112,8 @@ void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const doubl
                   std::span<const std::uint32_t> sources);
 
 /// Form factor by which a link's energy is judged: form_factor itself; where no point of the receiver lies in front of
-/// the source, but some of it does, what a small source at the distance of the nodes' middles would have.
+/// the source, but some of what is open of it may, what a small source at the distance of the nodes' middles would
+/// have.
 double judged_form_factor(const Node& receiver, const Node& source, double form_factor);
 
 }  // namespace exitance

@@ -13,7 +13,7 @@ namespace exitance {
 namespace {
 
 constexpr hsize_t kChunkBytes = 1 << 19;
-constexpr unsigned kDeflate = 1;  // form factors hardly compress; what does, does so at once
+constexpr unsigned kDeflate = 1;  // what compresses does so at once
 constexpr const char* kKind = "kind";
 
 // Failures are told by what we throw, not by what the library prints.
@@ -36,7 +36,7 @@ class Silence {
   void* data_ = nullptr;
 };
 
-// Where in the library the last failure began, in its words.
+// Why the last call failed: what the system said, or else where in the library that began, in its words.
 std::string reason() {
   std::string text;
   const auto take_first = [](unsigned n, const H5E_error2_t* error, void* to) -> herr_t {
@@ -44,6 +44,12 @@ std::string reason() {
     return 0;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first, &text);
+  // "file write failed: time = …, filename = …, errno = …, error message = '…', buf = …"
+  constexpr std::string_view kOfSystem = "error message = '";
+  if (const std::size_t at = text.find(kOfSystem); at != std::string::npos) {
+    const std::size_t first = at + kOfSystem.size();
+    return text.substr(first, text.find('\'', first) - first);
+  }
   std::ranges::replace(text, '\n', ' ');
   return text.empty() ? "HDF5 gives no reason" : text;
 }
@@ -95,6 +101,7 @@ DamagedFile::DamagedFile(const std::filesystem::path& path, const std::string& w
 
 struct ArchiveWriter::File {
   Draft draft;
+  Packing packing;
   Handle handle = create(draft);
 
   void write(const std::string& name, hid_t type, hsize_t count, const void* values) const {
@@ -104,7 +111,7 @@ struct ArchiveWriter::File {
     const hsize_t in_a_chunk = std::clamp<hsize_t>(kChunkBytes / H5Tget_size(type), 1, std::max<hsize_t>(count, 1));
     require(H5Pset_chunk(layout.id(), 1, &in_a_chunk));
     require(H5Pset_shuffle(layout.id()));
-    require(H5Pset_deflate(layout.id(), kDeflate));
+    if (packing == Packing::small || H5Tget_class(type) != H5T_FLOAT) require(H5Pset_deflate(layout.id(), kDeflate));
     require(H5Pset_fletcher32(layout.id()));
     require(H5Pset_obj_track_times(layout.id(), false));
     Handle dataset(H5Dcreate2(handle.id(), name.c_str(), type, space.id(), H5P_DEFAULT, layout.id(), H5P_DEFAULT),
@@ -120,8 +127,8 @@ struct ArchiveWriter::File {
   }
 };
 
-ArchiveWriter::ArchiveWriter(const std::filesystem::path& path, std::string_view kind)
-    : file_(new File{.draft = Draft(path)}) {
+ArchiveWriter::ArchiveWriter(const std::filesystem::path& path, std::string_view kind, Packing packing)
+    : file_(new File{.draft = Draft(path), .packing = packing}) {
   try {
     write(kKind, kind);
   } catch (...) {

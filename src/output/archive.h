@@ -1,9 +1,10 @@
 #pragma once
 // Archives: HDF5 files of named vectors and texts in which damage is noticed.
 //
-// Every vector is chunked, shuffled, deflated and has a Fletcher-32 checksum a chunk; texts are vectors of strings of a
-// fixed length. Written in the format of HDF5 1.10, in which the rest of the file has checksums too. Any HDF5 tool
-// reads them. The same contents are the same bytes. From one thread at a time: the library is not thread-safe.
+// Every vector is chunked, shuffled, deflated (but see Packing) and has a Fletcher-32 checksum a chunk; texts are
+// vectors of strings of a fixed length. Written in the format of HDF5 1.10, in which the rest of the file has checksums
+// too. Any HDF5 tool reads them. The same contents are the same bytes. From one thread at a time: the library is not
+// thread-safe.
 
 #include <cstdint>
 #include <filesystem>
@@ -30,11 +31,17 @@ class DamagedFile : public InputError {
   std::string damage_;
 };
 
+/// Form factors hardly compress, and trying to takes a seventh of the time that computing them takes.
+enum class Packing {
+  small,  ///< all is deflated
+  quick   ///< doubles are not, for files that do not stay
+};
+
 class ArchiveWriter {
  public:
   /// Begins a draft beside `path`. kind: what the archive holds, for readers to know their own, as in
   /// "exitance form factors 1". Throws InputError when it cannot be written.
-  ArchiveWriter(const std::filesystem::path& path, std::string_view kind);
+  ArchiveWriter(const std::filesystem::path& path, std::string_view kind, Packing packing = Packing::small);
   ~ArchiveWriter();
   ArchiveWriter(const ArchiveWriter&) = delete;
   ArchiveWriter& operator=(const ArchiveWriter&) = delete;

@@ -116,7 +116,7 @@ ArchiveReader Checkpoint::open(const fs::path& part) const {
 
 void Checkpoint::add(const std::function<void(ArchiveWriter&)>& write) {
   const fs::path path = folder_ / fmt::format("{}{:06}{}", kPrefix, next_, kSuffix);
-  ArchiveWriter file(path, kKind);
+  ArchiveWriter file(path, kKind, Packing::quick);
   file.write("key", key_);
   write(file);
   file.publish();

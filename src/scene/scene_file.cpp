@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,9 +12,9 @@
 #include "src/scene/furnished_room.h"
 #include "src/scene/input_error.h"
 #include "src/scene/mesh_file.h"
+#include "src/scene/object_materials.h"
 #include "src/scene/placement.h"
 #include "src/scene/scene_extent.h"
-#include "src/scene/text_cursor.h"
 #include "src/scene/toml_table.h"
 
 namespace exitance {
@@ -31,7 +29,7 @@ class SceneFile {
       : path_(path), emission_(emission), keep_faults_(keep_faults) {}
 
   DynamicScene read() {
-    const toml::table parsed = parse();
+    const toml::table parsed = parse_toml(path_);
     TomlTable file(parsed, path_.string(), "a scene file");
     scene_.name = file.string("name").value_or(path_.stem().string());
     read_unit(file);
@@ -51,39 +49,6 @@ class SceneFile {
   }
 
  private:
-  toml::table parse() const {
-    const std::string bytes = read_bytes(path_);
-    refuse_long_keys(bytes);
-    try {
-      return toml::parse(bytes, path_.string());
-    } catch (const toml::parse_error& error) {
-      throw InputError(path_.string(), error.source().begin.line, fmt::format("is not TOML: {}", error.description()));
-    }
-  }
-
-  /// toml++ limits how deep values nest, but not how many parts a dotted key has: each is a table in the one before,
-  /// and those are freed by recursion, which overflows the stack.
-  void refuse_long_keys(std::string_view text) const {
-    constexpr int kMostParts = 32;
-    std::size_t line = 1;
-    int parts = 0;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-      if (text[i] == '#') i = std::min(text.find('\n', i), text.size() - 1);
-      const char c = text[i];
-      if (c == '"' || c == '\'') {  // a part in quotes, or a text
-        const std::size_t end = text.find_first_of(std::string{c, '\n'}, i + 1);
-        if (end == std::string_view::npos) return;
-        i = text[end] == '\n' ? end - 1 : end;
-      } else if (c == '.') {
-        if (++parts >= kMostParts)
-          throw InputError(path_.string(), line, fmt::format("a key has more than {} parts; shorten it", kMostParts));
-      } else if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-' && c != ' ' && c != '\t') {
-        parts = 0;
-        line += c == '\n';
-      }
-    }
-  }
-
   void read_unit(TomlTable& file) {
     const auto unit = file.string("unit");
     if (!unit) return;
@@ -148,6 +113,9 @@ class SceneFile {
     Event event;
     event.line = table.line();
     event.time = table.require("time", table.number("time"));
+    if (event.time < 0)
+      table.fail(table.line_of("time"),
+                 fmt::format("the event is at {}, but the scene begins at 0; give it a later time", event.time));
     if (!events_.empty() && event.time < events_.back().time)
       table.fail(table.line_of("time"), fmt::format("the event is at {}, but the one before it at {}; put events in "
                                                     "order of time",
@@ -221,16 +189,12 @@ class SceneFile {
       const Material& own = part.materials[i];
       const bool is_used = std::ranges::any_of(part.surfaces, [&](const Surface& s) { return s.material == i; });
       if (overrides[i] != kOwn || !is_used) continue;
-      if (const auto named = kept.by_name.find(own.name); named != kept.by_name.end()) {
-        overrides[i] = named->second;
-      } else if (kept.every) {
-        overrides[i] = *kept.every;
+      if (const auto known = kept.of_new_shape(own)) {
+        overrides[i] = *known;
       } else if (own.rho.empty() && own.E.empty()) {
-        if (kept.used.size() != 1)
-          table.fail(table.line(), fmt::format("object '{}' is of {} materials and its new shape names none; say which "
-                                               "with \"material\" or \"materials\"",
-                                               name, kept.used.size()));
-        overrides[i] = *kept.used.begin();
+        table.fail(table.line(), fmt::format("object '{}' is of {} materials and its new shape names none; say which "
+                                             "with \"material\" or \"materials\"",
+                                             name, kept.used.size()));
       }
     }
     const auto every = table.string("material");
@@ -249,22 +213,16 @@ class SceneFile {
 
   /// What an object is made of changes, and with it what a later shape is.
   void follow_changes(const Edit& edit) {
-    ObjectMaterials& of = materials_of_[edit.object];
-    for (const MaterialChange& c : edit.materials) {
-      if (c.from == MaterialChange::kEvery) {
-        of = {c.to, {}, {c.to}};
-        continue;
-      }
-      if (of.used.erase(c.from) > 0) of.used.insert(c.to);
-      if (of.every == c.from) of.every = c.to;
-      for (auto& [name, number] : of.by_name) {
-        if (number == c.from) number = c.to;
-      }
-      const std::string& name = scene_.materials[c.from].name;
-      const auto of_file = material_numbers_.find(name);
-      const bool is_of_mesh = of_file == material_numbers_.end() || of_file->second != c.from;
-      if (is_of_mesh) of.by_name.insert_or_assign(name, c.to);
+    for (const MaterialChange& change : edit.materials) {
+      const bool is_of_mesh = change.from != MaterialChange::kEvery && !is_of_file(change.from);
+      materials_of_[edit.object].follow(change, is_of_mesh ? scene_.materials[change.from].name : "");
     }
+  }
+
+  /// Whether a [[material]] of the file is meant, not a mesh's own.
+  bool is_of_file(std::uint32_t material) const {
+    const auto found = material_numbers_.find(scene_.materials[material].name);
+    return found != material_numbers_.end() && found->second == material;
   }
 
   std::vector<MaterialChange> read_changes(TomlTable& table) const {
@@ -599,13 +557,6 @@ class SceneFile {
   LinkDefaults links_;
   std::vector<Event> events_;
   std::vector<CameraAt> camera_path_;
-  /// What an object is made of, for new shapes that do not say.
-  struct ObjectMaterials {
-    std::optional<std::uint32_t> every;            ///< what all is made of that is not named
-    std::map<std::string, std::uint32_t> by_name;  ///< of its mesh's materials, those that became others
-    std::set<std::uint32_t> used;                  ///< by its surfaces
-  };
-
   std::map<std::string, std::uint32_t> material_numbers_;
   std::vector<ObjectMaterials> materials_of_;     // by object
   std::map<std::uint32_t, std::uint32_t> named_;  // of the object being read: its material → the file's

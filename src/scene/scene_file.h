@@ -47,7 +47,7 @@
 //   absent = true                   # is not there until an event adds it
 //
 //   [[event]]                       # what happens to an object; in order of time, one event an object and time
-//   time = 1
+//   time = 1                        # not negative: the scene begins at 0
 //   object = "table"
 //   operation = "move"              # add, remove, move, reshape, change, select, deselect (edit.h)
 //   scale, rotate, translate        # add, move: where it stands, as in [[object]] and from what stands there, about

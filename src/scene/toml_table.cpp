@@ -3,11 +3,41 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "src/scene/input_error.h"
+#include "src/scene/text_cursor.h"
 
 namespace exitance {
+
+namespace {
+
+/// toml++ limits how deep values nest, but not how many parts a dotted key has: each is a table in the one before,
+/// and those are freed by recursion, which overflows the stack.
+void refuse_long_keys(const std::string& file, std::string_view text) {
+  constexpr int kMostParts = 32;
+  std::size_t line = 1;
+  int parts = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '#') i = std::min(text.find('\n', i), text.size() - 1);
+    const char c = text[i];
+    if (c == '"' || c == '\'') {  // a part in quotes, or a text
+      const std::size_t end = text.find_first_of(std::string{c, '\n'}, i + 1);
+      if (end == std::string_view::npos) return;
+      i = text[end] == '\n' ? end - 1 : end;
+    } else if (c == '.') {
+      if (++parts >= kMostParts)
+        throw InputError(file, line, fmt::format("a key has more than {} parts; shorten it", kMostParts));
+    } else if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-' && c != ' ' && c != '\t') {
+      parts = 0;
+      line += c == '\n';
+    }
+  }
+}
+
+}  // namespace
 
 std::uint32_t line_of(const toml::node& node) {
   return node.source().begin.line;
@@ -134,6 +164,16 @@ std::uint32_t TomlTable::line_of(std::string_view key) const {
 
 void TomlTable::fail(std::uint32_t line, const std::string& what) const {
   throw InputError(file_, line, what);
+}
+
+toml::table parse_toml(const std::filesystem::path& path) {
+  const std::string bytes = read_bytes(path);
+  refuse_long_keys(path.string(), bytes);
+  try {
+    return toml::parse(bytes, path.string());
+  } catch (const toml::parse_error& error) {
+    throw InputError(path.string(), error.source().begin.line, fmt::format("is not TOML: {}", error.description()));
+  }
 }
 
 }  // namespace exitance

@@ -4,6 +4,7 @@
 
 #include <toml++/toml.h>
 
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -60,5 +61,8 @@ class TomlTable {
 };
 
 std::uint32_t line_of(const toml::node& node);
+
+/// Throws InputError, with the line where the file is no TOML.
+toml::table parse_toml(const std::filesystem::path& path);
 
 }  // namespace exitance

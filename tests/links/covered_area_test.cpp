@@ -69,6 +69,8 @@ std::vector<Case> cases() {
   all.push_back({"turned box", room_with({turned(box(0.7, 0), 27, {1.5, 1.5, 0})}), 9 - 0.49, 0.49 + 1.4});
   all.push_back({"ends on a node's edge", room_with({box_faces({0.75, 0.75, 0}, {1.5, 1.5, 0.5}, 2, 0)}), 9 - 0.5625,
                  0.5625 + 1.5});
+  all.push_back({"leaves a strip of a node that none of its points lies on",
+                 room_with({box_faces({0.825, 0.75, 0}, {1.5, 1.5, 0.5}, 2, 0)}), 9 - 0.50625, 0.50625 + 1.425});
   all.push_back({"smaller box on a larger one",
                  room_with({box(0.8, 0), turned(box_faces({1.3, 1.4, 0.5}, {1.7, 1.8, 1}, 2, 0), 20, {1.5, 1.6, 0})}),
                  9 - 0.64, 0.16 + 0.8});
@@ -101,7 +103,7 @@ TEST(CoveredArea, IsExactWhereThingsLieOnOthers) {
       EXPECT_NEAR(sum, points.empty() ? 0 : 1, 1e-12);
     }
   }
-  Case stack = cases()[3];
+  Case stack = cases()[4];
   LinkedRadiosity links(stack.scene, coarse());
   EXPECT_NEAR(open_area_of(links, 1, kTop), 0.64 - 0.16, 1e-12);
   EXPECT_EQ(open_area_of(links, 1, kBottom), 0);

@@ -201,7 +201,7 @@ TEST(Archive, AFullDiskIsAnErrorThatTheProgramSurvivesAndLeavesNothing) {
     std::exit(0);
   };
   EXPECT_EXIT(write_too_much(), testing::ExitedWithCode(0),
-              AllOf(StartsWith(path.string()), HasSubstr("cannot be written")));
+              AllOf(StartsWith(path.string()), HasSubstr("cannot be written (File too large); choose")));
   EXPECT_EQ(folder.files(), 0u);
 }
 

@@ -235,6 +235,7 @@ TEST_F(EventFile, BadEventsNameTheirLineAndWhatIsWrong) {
   EXPECT_THAT(error_of(event(1, "cube", "add", "translate = [1e60, 0, 0]")), HasSubstr("cannot be put there"));
   EXPECT_THAT(error_of(event(1, "cube", "add", "speed = 3")), HasSubstr("\"speed\" is not known"));
   EXPECT_THAT(error_of("[[event]]\nobject = \"cube\"\noperation = \"add\"\n"), HasSubstr("\"time\" is missing"));
+  EXPECT_THAT(error_of(event(-1, "cube", "add")), HasSubstr("the event is at -1, but the scene begins at 0"));
   EXPECT_THAT(error_of("[[event]]\ntime = nan\nobject = \"cube\"\noperation = \"add\"\n"), HasSubstr("finite"));
   EXPECT_THAT(
       error_of("[[camera_path]]\ntime = 1\neye=[0,0,0]\ntarget=[1,1,1]\n[[camera_path]]\ntime = 1\neye=[0,0,0]\n"
