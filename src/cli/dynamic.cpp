@@ -135,7 +135,11 @@ class Dynamic {
         "elements should have: where those that change most go dark, as in a new shadow, error_worst_1_percent can\n"
         "exceed 1. error_bound is null while a change is in the log and once --no-log has forgotten one: finished "
         "then\n"
-        "says that nothing is left to do, not that B is right. seconds are wall clock, edits included.\n"
+        "says that nothing is left to do, not that B is right. seconds are wall clock, edits included, and so are\n"
+        "thread_seconds, summed over threads; cpu_seconds are of the processor. left_undone and\n"
+        "left_undone_worst_1_percent of hvt-peu: the same errors if all that links bring which --b-eps left as they were\n"
+        "were missing, but for its further reflection; no reference is needed for them. Where the second is large,\n"
+        "as it can be in dark places, a smaller --b-eps is called for.\n"
         "Each frame is written when it is done; Ctrl-C ends with those so far, exit code 4.\n"
         "Methods by links link all pairs of patches: clusters of patches are for solve --method hierarchical.");
   }

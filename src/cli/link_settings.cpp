@@ -17,8 +17,8 @@ constexpr std::size_t kManySurfaces = 1000;
 
 void LinkSettings::add_to(CLI::App& verb) {
   of_links_.push_back(verb.add_option("--eps", eps2_,
-                                      "Of links: refined while B F is above this share of the brightest E; as the "
-                                      "scene says unless given, or 0.005")
+                                      "Of links: refined while B F, what they may bring to any point, is above this "
+                                      "share of the brightest E; as the scene says unless given, or 0.005")
                           ->check(number_between(0)));
   of_links_.push_back(
       verb.add_option("--eps1", eps1_, "Un-refined below this; half of --eps unless given")->check(number_between(0)));

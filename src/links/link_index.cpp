@@ -77,7 +77,7 @@ void LinkIndex::replace(std::uint32_t receiver, std::span<const Replacement> rep
   }
   keep(0xffffffffu);
   // What an edit makes more of it is likely to change again.
-  if (size > block.links.capacity()) block.links.reserve(keeping_ ? size + size / 16 : size);
+  if (size > block.links.capacity()) block.links.reserve(keeping_ ? size + size / 64 : size);
   if (keeping_) {
     Replaced kept{{}, block.pairs, block.links.size()};
     kept.links.reserve(replacements.size());

@@ -413,6 +413,29 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
   follow(std::move(all), interruption, update);
 }
 
+std::vector<double> LinkedRadiosity::left_as_it_was() const {
+  std::vector<double> left(tree_.nodes().size());
+  if (!any_stale_) return left;
+  const std::uint32_t bands = radiosity_.bands();
+  for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
+    const Root& root = tree_.root(r);
+    if (!root.present) continue;
+    const std::span<const Link> links = links_.of_receiver(r);
+    for (std::size_t k = 0, stale_until = 0; k < links.size(); ++k) {
+      if (links[k].stale) stale_until = std::max<std::size_t>(stale_until, k + links[k].next);
+      if (k < stale_until && !links[k].ghost) left[links[k].destination] += links[k].energy;
+    }
+    const auto rho = radiosity_.rho().subspan(std::size_t{r} * bands, bands);
+    const double largest = *std::ranges::max_element(rho);
+    for (std::uint32_t n = root.node_first; n < root.node_first + root.node_count; ++n) {
+      const Node& node = tree_.node(n);
+      for (std::uint32_t c = 0; node.has_children() && c < 4; ++c) left[node.first_child + c] += left[n];
+    }
+    for (std::uint32_t n = root.node_first; n < root.node_first + root.node_count; ++n) left[n] *= largest;
+  }
+  return left;
+}
+
 std::vector<double> LinkedRadiosity::converged(const Abandon& abandon) const {
   LinkIndex links = links_;
   if (pending_) mark_pending(links);

@@ -25,8 +25,9 @@ enum class LinkMethod : std::uint8_t {
 
 struct LinkOptions {
   MeshOptions mesh;  ///< what the patches are
-  /// Shares of the largest luminance of E that is given: links are refined while B F is above eps2, un-refined when it
-  /// falls below eps1, and left as they are by PEU where it could not change by more than B_eps. 0 ≤ eps1 ≤ eps2.
+  /// Shares of the largest luminance of E that is given: links are refined while B F, F a bound for any point of the
+  /// receiver (most_form_factor), is above eps2, un-refined when it falls below eps1, and left as they are by PEU where
+  /// what they bring could not change by more than B_eps. 0 ≤ eps1 ≤ eps2.
   double eps2 = 5e-3, eps1 = 2.5e-3, B_eps = 1e-4;
   /// [m²] no sub-patch is smaller, about; 0: default_smallest_area.
   double smallest_area = 0;
@@ -97,6 +98,10 @@ class LinkedRadiosity {
 
   /// Goes on with what the last update left, the same way. REQUIRES: built.
   LinkUpdate work_off(const LinkInterruption& interruption = {});
+
+  /// What links bring together that updates have left as they were (Link::stale and below), by node, luminance of ρ H
+  /// [W/m²]: about by how much B may be off at most, before that is reflected on. All 0 after HVT.
+  std::vector<double> left_as_it_was() const;
 
   /// B by node and band of the same links, with every value as the scene has it, converged to 1e-12 of max B. Throws
   /// Abandoned as updates do.

@@ -59,13 +59,14 @@ bool PairUpdate::is_insignificant(const Link& link) const {
   return !link.ghost && most_energy({link.destination, link.source}) < task_.B_eps;
 }
 
-bool PairUpdate::wants_refinement(const Ends& ends, LinkCode code, double energy, bool blocked) const {
-  return !blocked && energy > task_.eps2 && divided_end(ends, code).has_value();
+bool PairUpdate::wants_refinement(const Ends& ends, LinkCode code, bool blocked) const {
+  return !blocked && task_.luminance[ends.source] > task_.eps2 && divided_end(ends, code).has_value() &&
+         most_energy(ends) > task_.eps2;
 }
 
 /// Whether it is to be done, too.
-bool PairUpdate::divides(const Ends& ends, LinkCode code, double energy, bool blocked) const {
-  return wants_refinement(ends, code, energy, blocked) &&
+bool PairUpdate::divides(const Ends& ends, LinkCode code, bool blocked) const {
+  return wants_refinement(ends, code, blocked) &&
          !(task_.scope == LinkScope::refinement && task_.stop && task_.stop());
 }
 
@@ -88,9 +89,8 @@ PairUpdate::Ends PairUpdate::child(const Ends& ends, End end, unsigned k) const 
 bool PairUpdate::wants_change(std::span<const Link> links) const {
   return std::ranges::any_of(links, [&](const Link& link) {
     const Ends ends{link.destination, link.source};
-    const double B_F = energy(ends, link.form_factor);
-    if (link.ghost) return task_.scope == LinkScope::materials && B_F < task_.eps1;
-    return wants_refinement(ends, link.code, B_F, link.blocked);
+    if (link.ghost) return task_.scope == LinkScope::materials && most_energy(ends) < task_.eps1;
+    return wants_refinement(ends, link.code, link.blocked);
   });
 }
 
@@ -258,7 +258,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
 
   if (!link.ghost) {
     const bool blocked = evaluate || may_change ? sight_of(here).state == Sight::State::blocked : link.blocked;
-    if (may_change && divides(ends, link.code, energy(ends, F), blocked)) {
+    if (may_change && divides(ends, link.code, blocked)) {
       changed_ = true;
       grow(ends, link.code, sight_of(here));
     } else if (evaluate) {
@@ -298,7 +298,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     out_[at] = ghost(ends, link.code, F, known ? sight_of(here) : Sight{Sight::State::partial, 0, 0});
   }
   close(at);
-  if (may_change && task_.scope != LinkScope::refinement && all_leaves && energy(ends, F) < task_.eps1) {
+  if (may_change && task_.scope != LinkScope::refinement && all_leaves && most_energy(ends) < task_.eps1) {
     out_.resize(at);
     add_leaf(ends, link.code, F, sight_of(here));
     changed_ = true;
@@ -318,7 +318,7 @@ void PairUpdate::grow_roots(const Ends& ends) {
 void PairUpdate::grow(const Ends& ends, LinkCode code, const Sight& sight) {
   if (out_.size() >= most_) refuse_more_links(task_);
   const double F = sight_.form_factor(ends.receiver, ends.source);
-  if (!divides(ends, code, energy(ends, F), sight.state == Sight::State::blocked)) {
+  if (!divides(ends, code, sight.state == Sight::State::blocked)) {
     ++work_.links_affected;
     return add_leaf(ends, code, F, sight);
   }

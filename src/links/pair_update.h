@@ -2,6 +2,10 @@
 // What becomes of the links between two patches: shadow detection, un-refinement and refinement (Feng et al., sections
 // 3, 5 and 6.1).
 //
+// F, by which B F is held against eps1 and eps2, is the bound of most_form_factor: no point of its receiver gets more by
+// a link that stands. The form factor itself, a mean, would let stand what is bright for some of a large receiver and
+// dark for most of it.
+//
 // The listing of section 3 puts links that nothing affects into the shadow set; they keep their kind here, as is meant.
 // A ghost is un-refined when B F falls below eps1 and nothing below it is refined; the listing asks its children.
 
@@ -70,8 +74,8 @@ class PairUpdate {
   bool is_insignificant(const Link& link) const;
   std::optional<LinkCode::End> divided_end(const Ends& ends, LinkCode code) const;
   Ends child(const Ends& ends, LinkCode::End end, unsigned k) const;
-  bool wants_refinement(const Ends& ends, LinkCode code, double energy, bool blocked) const;
-  bool divides(const Ends& ends, LinkCode code, double energy, bool blocked) const;
+  bool wants_refinement(const Ends& ends, LinkCode code, bool blocked) const;
+  bool divides(const Ends& ends, LinkCode code, bool blocked) const;
   bool wants_change(std::span<const Link> links) const;
   bool touches_changed(const Sight& sight) const;
   const Sight& sight_of(Above& link);
