@@ -50,12 +50,17 @@ double PairUpdate::most_energy(const Ends& ends) const {
          most_form_factor(tree_.node(ends.receiver), tree_.node(ends.source), task_.now->soup());
 }
 
-/// Whether a link's energy can neither have been more than B_eps, nor be now. Where what covers the receiver has
-/// changed, another part of it counts than before, of which the form factor says nothing, nor a ghost's of what its
-/// descendants may have.
+/// Whether what covers the receiver changes what a link, or a descendant of it, brings.
+bool PairUpdate::receives_anew(const Link& link) const {
+  const Node& receiver = tree_.node(link.destination);
+  return link.ghost ? receiver.covered_anew : receiver.receives_anew;
+}
+
+/// Whether a link's energy can neither have been more than B_eps, nor be now. Where it is received at other points than
+/// before, the form factor says nothing of them, nor a ghost's of what its descendants may have.
 bool PairUpdate::is_insignificant(const Link& link) const {
   if (link.energy >= task_.B_eps) return false;
-  if (!tree_.node(link.destination).covered_anew) return true;
+  if (!receives_anew(link)) return true;
   return !link.ghost && most_energy({link.destination, link.source}) < task_.B_eps;
 }
 
@@ -114,7 +119,8 @@ PairUpdate::Need PairUpdate::need(const PatchPair& pair, std::span<const Link> l
   }
   if (moved || tests_all()) return Need::work;
   const bool stale = task_.any_stale && std::ranges::any_of(links, [](const Link& link) { return link.stale; });
-  if (!stale && !receiver.covered_anew && !shadows_->may_change(pair.receiver, pair.source)) return Need::nothing;
+  if (!stale && !receives_anew(links.front()) && !shadows_->may_change(pair.receiver, pair.source))
+    return Need::nothing;
   return only_significant() && is_insignificant(links.front()) ? Need::skip : Need::work;
 }
 
@@ -213,7 +219,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     may_change = task_.scope != LinkScope::values;
   } else {
     if (only_significant() && is_insignificant(link)) return leave_stale();
-    const bool covered_anew = tree_.node(ends.receiver).covered_anew;
+    const bool anew = receives_anew(link);
     const bool has_changed = task_.before != nullptr;
     const bool has_stale = task_.any_stale && std::ranges::any_of(old, [](const Link& l) { return l.stale; });
     if (!has_changed && !tests_all() && !has_stale) return copy(old);
@@ -231,7 +237,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (has_changed && !tests_all() && here.before && !has_stale && (judges || !touched_before)) {
       // Most shafts are not entered by what moved: that alone is asked first.
       touched = is_touched(here);
-      if (!touched && !touched_before && !covered_anew) {
+      if (!touched && !touched_before && !anew) {
         forget();
         return copy(old);
       }
@@ -240,12 +246,12 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
       // What moved in can only hide, what moved away only reveal.
       const double v = link.visibility;
       const double most = std::max(touched || !here.before ? v : 0, touched_before ? 1 - v : 0) * energy(ends, F);
-      if (most < task_.B_eps && !covered_anew) return leave_stale();
+      if (most < task_.B_eps && !anew) return leave_stale();
     }
     const bool asks = !only_significant() || !link.ghost || has_stale;
     if (asks) touched = has_changed && touches_changed(sight_of(here));
     const bool below_blocked = !root && (here.blocked || is_blocked(above->now));
-    here.affected = below_blocked ? above->affected : touched_before || touched || covered_anew;
+    here.affected = below_blocked ? above->affected : touched_before || touched || anew;
     may_change = task_.scope != LinkScope::values && here.affected;
     evaluate = tests_all() || here.affected;
     if (!evaluate && !has_stale) {

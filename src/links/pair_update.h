@@ -67,6 +67,7 @@ class PairUpdate {
   bool face_each_other(const Ends& ends) const;
   double energy(const Ends& ends, double form_factor) const;
   double most_energy(const Ends& ends) const;
+  bool receives_anew(const Link& link) const;
   bool is_insignificant(const Link& link) const;
   std::optional<LinkCode::End> divided_end(const Ends& ends, LinkCode code) const;
   Ends child(const Ends& ends, LinkCode::End end, unsigned k) const;
