@@ -17,7 +17,7 @@ struct Link {
   LinkCode code;                  ///< from the pair of whole patches to these nodes
   std::uint32_t source = 0;       ///< node that emits
   std::uint32_t destination = 0;  ///< node that gathers
-  double form_factor = 0;         ///< from destination to source as if nothing stood between
+  double form_factor = 0;         ///< from destination to source as if nothing stood between; of a stale one at least
   /// What of that is seen, 0 … 1, or more where some of the destination is covered and the rest sees more of the source
   /// than all of it would; of a ghost 1, as it is not looked at.
   double visibility = 0;

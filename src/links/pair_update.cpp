@@ -1,6 +1,7 @@
 #include "src/links/pair_update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "src/links/push_pull.h"
@@ -45,9 +46,22 @@ double PairUpdate::energy(const Ends& ends, double form_factor) const {
 }
 
 /// At any point of the receiver.
+double PairUpdate::most_form_factor(const Ends& ends) const {
+  return exitance::most_form_factor(tree_.node(ends.receiver), tree_.node(ends.source), task_.now->soup());
+}
+
 double PairUpdate::most_energy(const Ends& ends) const {
-  return task_.luminance[ends.source] *
-         most_form_factor(tree_.node(ends.receiver), tree_.node(ends.source), task_.now->soup());
+  return task_.luminance[ends.source] * most_form_factor(ends);
+}
+
+/// Has a link that is left stale tell how much it may bring once its source is brighter, while it brings what it did: its
+/// form factor becomes the next power of two, by which nothing is rounded.
+void PairUpdate::raise(Link& link, double form_factor) const {
+  const double transfer = link.transfer();
+  if (form_factor <= link.possible_transfer() || form_factor <= transfer) return;
+  link.energy = energy({link.destination, link.source}, form_factor);
+  link.form_factor = std::exp2(std::ceil(std::log2(form_factor)));
+  link.visibility = transfer / link.form_factor;
 }
 
 /// Whether what covers the receiver changes what a link, or a descendant of it, brings.
@@ -121,7 +135,8 @@ PairUpdate::Need PairUpdate::need(const PatchPair& pair, std::span<const Link> l
   const bool stale = task_.any_stale && std::ranges::any_of(links, [](const Link& link) { return link.stale; });
   if (!stale && !receives_anew(links.front()) && !shadows_->may_change(pair.receiver, pair.source))
     return Need::nothing;
-  return only_significant() && is_insignificant(links.front()) ? Need::skip : Need::work;
+  const bool skips = only_significant() && is_insignificant(links.front()) && !receives_anew(links.front());
+  return skips ? Need::skip : Need::work;
 }
 
 double PairUpdate::stake(const PatchPair& pair, std::span<const Link> links) const {
@@ -186,9 +201,13 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (here.now) sight_.forget(*here.now);
     if (here.before) sight_before_->forget(*here.before);
   };
-  const auto leave_stale = [&] {
-    copy(old);
-    out_[out_.size() - old.size()].stale = true;
+  // form_factor: that of the link as it is, where it is known and larger than it was.
+  const auto leave_stale = [&](std::optional<double> form_factor = {}) {
+    Link& left = out_.emplace_back(link);
+    left.stale = true;
+    if (!link.ghost && !only_refines() && (renewed || receives_anew(link)))
+      raise(left, form_factor ? *form_factor : most_form_factor(ends));
+    copy(old.subspan(1));
     changed_ = true;
     ++work_.skipped;
     forget();
@@ -214,7 +233,8 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     }
     F = sight_.form_factor(ends.receiver, ends.source);
     const double most = std::max(energy(ends, F), Y * link.transfer());
-    if (only_significant() && !link.ghost && most < task_.B_eps) return leave_stale();
+    const bool covered = tree_.node(ends.receiver).covered;
+    if (only_significant() && !link.ghost && !covered && most < task_.B_eps) return leave_stale(F);
     here.affected = evaluate = true;
     may_change = task_.scope != LinkScope::values;
   } else {

@@ -21,7 +21,7 @@ struct Node {
   std::uint8_t corners = 4;    ///< 3 or 4
   std::uint8_t level = 0;      ///< 0: a root
   bool whole = false;          ///< all of its facet
-  bool covered = false;        ///< some of it, by what lies on it
+  bool covered = false;        ///< some of it, by what lies on it, for certain or within rounding
   bool covered_anew = false;   ///< it is or was, and by other things or at other places since the last edits
   bool receives_anew = false;  ///< at other points than before (open_points), as it is covered anew
   std::uint32_t facet = 0;     ///< of the soup
