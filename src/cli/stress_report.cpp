@@ -68,6 +68,7 @@ Json of_tally(const QuestionKind& kind, const StressTally& t) {
           {"seen", {{"none", t.none}, {"some", t.some}, {"all", t.all}}},
           {"unjudged", t.unjudged},
           {"wrong", t.wrong},
+          {"classes", t.classes},
           {"worst_value_error", t.worst_error},
           {"worst_relative_error", t.worst_relative_error},
           {"worst_margin", t.worst_margin},

@@ -17,8 +17,9 @@ struct Link {
   LinkCode code;                  ///< from the pair of whole patches to these nodes
   std::uint32_t source = 0;       ///< node that emits
   std::uint32_t destination = 0;  ///< node that gathers
-  double form_factor = 0;         ///< from what is open of the destination to the source as if nothing stood between
-  double visibility = 0;          ///< what of that is seen, 0 … 1; of a ghost 1, as it is not looked at
+  /// From what is open of the destination to the source as if nothing stood between; of a stale link at least.
+  double form_factor = 0;
+  double visibility = 0;  ///< what of that is seen, 0 … 1; of a ghost 1, as it is not looked at
   /// What it could transfer at most, B F, in luminance [W/m²], as of the last exchange of energy; of a ghost the
   /// largest of its descendants'.
   double energy = 0;

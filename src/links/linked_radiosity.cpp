@@ -72,7 +72,7 @@ LinkedRadiosity::LinkedRadiosity(Scene scene, const LinkOptions& options)
     : options_(checked(options, scene)),
       scene_(std::move(scene)),
       obstacles_(std::make_shared<const Obstacles>(scene_)),
-      tree_(scene_, obstacles_->soup(), {options_.mesh, options_.smallest_area}),
+      tree_(scene_, obstacles_->soup(), {options_.mesh, options_.smallest_area, options_.points_per_edge}),
       radiosity_(tree_, scene_),
       links_(tree_.roots().size()),
       brightest_(largest_emission(scene_.scene())) {

@@ -1,6 +1,7 @@
 #include "src/links/pair_update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "src/links/push_pull.h"
@@ -45,17 +46,35 @@ double PairUpdate::energy(const Ends& ends, double form_factor) const {
 }
 
 /// At any point of the receiver.
-double PairUpdate::most_energy(const Ends& ends) const {
-  return task_.luminance[ends.source] *
-         most_form_factor(tree_.node(ends.receiver), tree_.node(ends.source), task_.now->soup());
+double PairUpdate::most_form_factor(const Ends& ends) const {
+  return exitance::most_form_factor(tree_.node(ends.receiver), tree_.node(ends.source), task_.now->soup());
 }
 
-/// Whether a link's energy can neither have been more than B_eps, nor be now. Where what covers the receiver has
-/// changed, another part of it counts than before, of which the form factor says nothing, nor a ghost's of what its
-/// descendants may have.
+double PairUpdate::most_energy(const Ends& ends) const {
+  return task_.luminance[ends.source] * most_form_factor(ends);
+}
+
+/// Has a link that is left stale tell how much it may bring once its source is brighter, while it brings what it did: its
+/// form factor becomes the next power of two, by which nothing is rounded.
+void PairUpdate::raise(Link& link, double form_factor) const {
+  if (form_factor <= link.form_factor) return;
+  const double transfer = link.transfer();
+  link.energy = energy({link.destination, link.source}, form_factor);
+  link.form_factor = std::exp2(std::ceil(std::log2(form_factor)));
+  link.visibility = transfer / link.form_factor;
+}
+
+/// Whether what covers the receiver changes what a link, or a descendant of it, brings.
+bool PairUpdate::receives_anew(const Link& link) const {
+  const Node& receiver = tree_.node(link.destination);
+  return link.ghost ? receiver.covered_anew : receiver.receives_anew;
+}
+
+/// Whether a link's energy can neither have been more than B_eps, nor be now. Where it is received at other points than
+/// before, the form factor says nothing of them, nor a ghost's of what its descendants may have.
 bool PairUpdate::is_insignificant(const Link& link) const {
   if (link.energy >= task_.B_eps) return false;
-  if (!tree_.node(link.destination).covered_anew) return true;
+  if (!receives_anew(link)) return true;
   return !link.ghost && most_energy({link.destination, link.source}) < task_.B_eps;
 }
 
@@ -114,8 +133,10 @@ PairUpdate::Need PairUpdate::need(const PatchPair& pair, std::span<const Link> l
   }
   if (moved || tests_all()) return Need::work;
   const bool stale = task_.any_stale && std::ranges::any_of(links, [](const Link& link) { return link.stale; });
-  if (!stale && !receiver.covered_anew && !shadows_->may_change(pair.receiver, pair.source)) return Need::nothing;
-  return only_significant() && is_insignificant(links.front()) ? Need::skip : Need::work;
+  if (!stale && !receives_anew(links.front()) && !shadows_->may_change(pair.receiver, pair.source))
+    return Need::nothing;
+  const bool skips = only_significant() && is_insignificant(links.front()) && !receives_anew(links.front());
+  return skips ? Need::skip : Need::work;
 }
 
 double PairUpdate::stake(const PatchPair& pair, std::span<const Link> links) const {
@@ -180,9 +201,13 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (here.now) sight_.forget(*here.now);
     if (here.before) sight_before_->forget(*here.before);
   };
-  const auto leave_stale = [&] {
-    copy(old);
-    out_[out_.size() - old.size()].stale = true;
+  // form_factor: that of the link as it is, where it is known and larger than it was.
+  const auto leave_stale = [&](std::optional<double> form_factor = {}) {
+    Link& left = out_.emplace_back(link);
+    left.stale = true;
+    if (!link.ghost && !only_refines() && (renewed || receives_anew(link)))
+      raise(left, form_factor ? *form_factor : most_form_factor(ends));
+    copy(old.subspan(1));
     changed_ = true;
     ++work_.skipped;
     forget();
@@ -208,12 +233,12 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     }
     F = sight_.form_factor(ends.receiver, ends.source);
     const double most = std::max(energy(ends, F), Y * link.transfer());
-    if (only_significant() && !link.ghost && most < task_.B_eps) return leave_stale();
+    if (only_significant() && !link.ghost && most < task_.B_eps) return leave_stale(F);
     here.affected = evaluate = true;
     may_change = task_.scope != LinkScope::values;
   } else {
     if (only_significant() && is_insignificant(link)) return leave_stale();
-    const bool covered_anew = tree_.node(ends.receiver).covered_anew;
+    const bool anew = receives_anew(link);
     const bool has_changed = task_.before != nullptr;
     const bool has_stale = task_.any_stale && std::ranges::any_of(old, [](const Link& l) { return l.stale; });
     if (!has_changed && !tests_all() && !has_stale) return copy(old);
@@ -231,7 +256,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (has_changed && !tests_all() && here.before && !has_stale && (judges || !touched_before)) {
       // Most shafts are not entered by what moved: that alone is asked first.
       touched = is_touched(here);
-      if (!touched && !touched_before && !covered_anew) {
+      if (!touched && !touched_before && !anew) {
         forget();
         return copy(old);
       }
@@ -240,19 +265,19 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
       // What moved in can only hide, what moved away only reveal.
       const double v = link.visibility;
       const double most = std::max(touched || !here.before ? v : 0, touched_before ? 1 - v : 0) * energy(ends, F);
-      if (most < task_.B_eps && !covered_anew) return leave_stale();
+      if (most < task_.B_eps && !anew) return leave_stale();
     }
     const bool asks = !only_significant() || !link.ghost || has_stale;
     if (asks) touched = has_changed && touches_changed(sight_of(here));
     const bool below_blocked = !root && (here.blocked || is_blocked(above->now));
-    here.affected = below_blocked ? above->affected : touched_before || touched || covered_anew;
+    here.affected = below_blocked ? above->affected : touched_before || touched || anew;
     may_change = task_.scope != LinkScope::values && here.affected;
     evaluate = tests_all() || here.affected;
     if (!evaluate && !has_stale) {
       forget();
       return copy(old);
     }
-    if (tests_all() || covered_anew) F = sight_.form_factor(ends.receiver, ends.source);
+    if (tests_all() || anew) F = sight_.form_factor(ends.receiver, ends.source);
     changed_ = changed_ || evaluate;
   }
 

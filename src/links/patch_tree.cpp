@@ -61,6 +61,21 @@ std::array<Vec3, 4> corners_of_child(const Node& parent, unsigned k) {
   return of_child;
 }
 
+/// PatchTree::open_points of a node as it is covered by these.
+void points_left_open(const Node& node, unsigned per_edge, std::span<const Lid> lids, std::vector<NodePoint>& points) {
+  if (!node.covered) return node_points(node, per_edge, points);
+  points.clear();
+  for (unsigned rule = per_edge; points.empty() && node.open_area > 0 && rule <= kMostPointsAnEdge; rule *= 2) {
+    node_points(node, rule, points);
+    std::erase_if(points, [&](const NodePoint& p) {
+      return std::ranges::any_of(lids, [&](const Lid& lid) { return lid.covers(p.at); });
+    });
+  }
+  double sum = 0;
+  for (const NodePoint& p : points) sum += p.weight;
+  for (NodePoint& p : points) p.weight /= sum;
+}
+
 }  // namespace
 
 PatchTree::PatchTree(const EditedScene& scene, const PolygonSoup& soup, const TreeOptions& options)
@@ -204,14 +219,14 @@ void PatchTree::cover(const PolygonSoup& soup, const Contacts& contacts) {
     Root& root = roots_[r];
     const auto nodes = std::span(nodes_).subspan(root.node_first, root.node_count);
     if (std::exchange(root.covered_anew, false)) {
-      for (Node& node : nodes) node.covered_anew = false;
+      for (Node& node : nodes) node.covered_anew = node.receives_anew = false;
     }
     if (!root.present) continue;
     std::vector<Lid> lids = lids_on(soup, contacts, nodes.front().facet), changed;
     if (root.placed) {
       changed = lids;
       for (Node& node : nodes) {
-        node.covered_anew = std::exchange(node.covered, false);
+        node.covered_anew = node.receives_anew = std::exchange(node.covered, false);
         root.covered_anew = root.covered_anew || node.covered_anew;
         node.open_area = node.area;
       }
@@ -220,15 +235,16 @@ void PatchTree::cover(const PolygonSoup& soup, const Contacts& contacts) {
                                     std::back_inserter(changed));
     }
     root.placed = false;
-    lids_[r] = std::move(lids);
-    if (!changed.empty()) set_open_area(root.node_first, lids_[r], changed);
+    const std::vector<Lid> before = std::exchange(lids_[r], std::move(lids));
+    if (!changed.empty()) set_open_area(root.node_first, before, lids_[r], changed);
     root.covered_anew = root.covered_anew || nodes.front().covered_anew;
   }
 }
 
-/// lids: all that may cover some of the node; changed: those that do or did so and have come or gone. Of a node that
-/// has children it is their sum.
-void PatchTree::set_open_area(std::uint32_t n, std::span<const Lid> lids, std::span<const Lid> changed) {
+/// lids: all that may cover some of the node; before: those that did; changed: those that do or did so and have come or
+/// gone. Of a node that has children it is their sum.
+void PatchTree::set_open_area(std::uint32_t n, std::span<const Lid> before, std::span<const Lid> lids,
+                              std::span<const Lid> changed) {
   Node& node = nodes_[n];
   const auto of_node = [&](std::span<const Lid> all) {
     std::vector<Lid> found;
@@ -240,34 +256,30 @@ void PatchTree::set_open_area(std::uint32_t n, std::span<const Lid> lids, std::s
   if (changed_here.empty()) return;
   const std::vector<Lid> lids_here = of_node(lids);
   node.covered_anew = true;
+  const bool was_covered = node.covered;
+  std::vector<NodePoint> points_before, points;
+  points_left_open(node, options_.points_per_edge, before, points_before);
   if (!node.has_children()) {
     node.open_area = open_area(node.loop(), node.area, lids_here);
-    node.covered = node.open_area < node.area;
-    return;
+    node.covered = node.open_area < node.area ||
+                   std::ranges::any_of(lids_here, [](const Lid& lid) { return lid.uncertain.has_value(); });
+  } else {
+    double open = 0;
+    node.covered = false;
+    for (std::uint32_t child = node.first_child; child < node.first_child + 4; ++child) {
+      set_open_area(child, before, lids_here, changed_here);
+      open += nodes_[child].open_area;
+      node.covered = node.covered || nodes_[child].covered;
+    }
+    node.open_area = node.covered ? open : node.area;
   }
-  double open = 0;
-  node.covered = false;
-  for (std::uint32_t child = node.first_child; child < node.first_child + 4; ++child) {
-    set_open_area(child, lids_here, changed_here);
-    open += nodes_[child].open_area;
-    node.covered = node.covered || nodes_[child].covered;
-  }
-  node.open_area = node.covered ? open : node.area;
+  points_left_open(node, options_.points_per_edge, lids_here, points);
+  node.receives_anew =
+      node.covered != was_covered || !std::ranges::equal(points, points_before, {}, &NodePoint::at, &NodePoint::at);
 }
 
 void PatchTree::open_points(std::uint32_t n, unsigned per_edge, std::vector<NodePoint>& points) const {
-  const Node& node = nodes_[n];
-  if (!node.covered) return node_points(node, per_edge, points);
-  points.clear();
-  for (unsigned rule = per_edge; points.empty() && node.open_area > 0 && rule <= kMostPointsAnEdge; rule *= 2) {
-    node_points(node, rule, points);
-    std::erase_if(points, [&](const NodePoint& p) {
-      return std::ranges::any_of(lids_[node.root], [&](const Lid& lid) { return lid.covers(p.at); });
-    });
-  }
-  double sum = 0;
-  for (const NodePoint& p : points) sum += p.weight;
-  for (NodePoint& p : points) p.weight /= sum;
+  points_left_open(nodes_[n], per_edge, lids_[nodes_[n].root], points);
 }
 
 void node_points(const Node& node, unsigned per_edge, std::vector<NodePoint>& points) {

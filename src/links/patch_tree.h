@@ -21,8 +21,9 @@ struct Node {
   std::uint8_t corners = 4;    ///< 3 or 4
   std::uint8_t level = 0;      ///< 0: a root
   bool whole = false;          ///< all of its facet
-  bool covered = false;        ///< some of it, by what lies on it
+  bool covered = false;        ///< some of it, by what lies on it, for certain or within rounding
   bool covered_anew = false;   ///< it is or was, and by other things or at other places since the last edits
+  bool receives_anew = false;  ///< at other points than before (open_points), as it is covered anew
   std::uint32_t facet = 0;     ///< of the soup
   std::uint32_t root = 0;      ///< of the tree
   std::uint32_t parent = kNone;
@@ -54,6 +55,7 @@ struct NodePoint {
 struct TreeOptions {
   MeshOptions mesh;  ///< what the patches are; elements_per_edge does not count
   double smallest_area = 1;
+  unsigned points_per_edge = 2;  ///< squared, the points by which nodes receive (Node::receives_anew)
 };
 
 /// A quadtree a patch: every node that is not too small has four children, whether links reach them or not, so that a
@@ -94,7 +96,8 @@ class PatchTree {
   void append(const std::vector<Node>& root_nodes, const std::vector<std::uint32_t>& surfaces, std::uint32_t object);
   void place_children(std::uint32_t node);
   void number_facets(const PolygonSoup& soup, std::span<const PolygonSoup::PolygonRange> polygons);
-  void set_open_area(std::uint32_t node, std::span<const Lid> lids, std::span<const Lid> changed);
+  void set_open_area(std::uint32_t node, std::span<const Lid> before, std::span<const Lid> lids,
+                     std::span<const Lid> changed);
 
   TreeOptions options_;
   std::vector<Node> nodes_;

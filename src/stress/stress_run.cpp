@@ -198,6 +198,7 @@ class StressRun {
           state_.unjudged.push_back({number, contender.name + ": " + *exception});
         }
         tally.wrong = verdict.is_wrong ? 1 : 0;
+        tally.classes = opinion.classes.size();
         tally.worst_error = verdict.error;
         tally.worst_relative_error = verdict.relative_error;
         if (verdict.is_wrong) wrong.push_back({number, c, names_.size()});
@@ -309,6 +310,7 @@ void StressTally::add(const StressTally& other) {
   all += other.all;
   unjudged += other.unjudged;
   wrong += other.wrong;
+  classes += other.classes;
   worst_error = std::max(worst_error, other.worst_error);
   worst_relative_error = std::max(worst_relative_error, other.worst_relative_error);
   worst_margin = std::max(worst_margin, other.worst_margin);

@@ -26,6 +26,7 @@ struct StressTally {
   /// Answers that are further from the truth than their margin, or say of what is hidden that it is seen, or that
   /// something is open, hidden or away that is not; and exceptions instead of answers.
   std::uint64_t wrong = 0;
+  std::uint64_t classes = 0;        ///< that were compared with the truth's, of shafts and shadow volumes
   double worst_error = 0;           ///< of F, absolute
   double worst_relative_error = 0;  ///< where F ≥ 1e-15
   double worst_margin = 0;

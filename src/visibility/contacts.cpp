@@ -14,6 +14,10 @@ bool face_against(const Plane& a, const Plane& b) {
   return dot(a.normal, b.normal) < -0.5 * norm(a.normal) * norm(b.normal);
 }
 
+bool face_alike(const Plane& a, const Plane& b) {
+  return dot(a.normal, b.normal) > 0.5 * norm(a.normal) * norm(b.normal);
+}
+
 }  // namespace
 
 bool lies_within(const PolygonSoup& soup, std::uint32_t facet, const Vec3& point) {
@@ -29,8 +33,7 @@ bool lies_within(const PolygonSoup& soup, std::uint32_t facet, const Vec3& point
 Contacts::Contacts(const PolygonSoup& soup)
     : soup_(&soup), near_(kNear * soup.extent()), lying_on_(soup.facets().size()) {
   const auto set = [&](std::uint32_t f, LyingOn found) {
-    if (!found.touching.empty() || !found.burying.empty() || !found.overlying.empty())
-      lying_on_.set(f, std::move(found));
+    if (!found.empty()) lying_on_.set(f, std::move(found));
   };
   for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
     if (soup.is_present(f)) set(f, find_lying_on(f));
@@ -70,9 +73,13 @@ Contacts::LyingOn Contacts::find_lying_on(std::uint32_t f) const {
   }
   std::ranges::sort(near);
   for (const std::uint32_t t : near) {
-    if (face_against(facets[t].plane, plane) && reaches(t, plane) && !std::ranges::binary_search(coplanar, t) &&
-        !are_sides_of_a_sheet(facets[t].polygon, facets[f].polygon))
-      found.touching.push_back(t);
+    if (t == f || std::ranges::binary_search(coplanar, t)) continue;
+    if (face_against(facets[t].plane, plane)) {
+      if (reaches(t, plane) && !are_sides_of_a_sheet(facets[t].polygon, facets[f].polygon)) found.touching.push_back(t);
+    } else if (facets[t].polygon != facets[f].polygon && face_alike(facets[t].plane, plane) &&
+               (lies_in(t, plane) || lies_in(f, facets[t].plane))) {
+      found.level.push_back(t);
+    }
   }
   return found;
 }

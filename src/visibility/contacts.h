@@ -35,9 +35,14 @@ class Contacts {
   /// Whether something does with open space before it: a later surface that faces the same way, or a sheet.
   bool overlaid(std::uint32_t facet, const Vec3& point) const;
   bool may_be_overlaid(std::uint32_t facet) const { return !lying_on_[facet].overlying.empty(); }
-  bool may_be_covered(std::uint32_t facet) const { return may_be_overlaid(facet) || burying_count(facet) > 0; }
+  bool may_be_covered(std::uint32_t facet) const {
+    return may_be_overlaid(facet) || burying_count(facet) > 0 || !level_with(facet).empty();
+  }
   /// The facets that cover some of it by lying in its plane, exactly or nearly, in no particular order.
   std::vector<std::uint32_t> covering(std::uint32_t facet) const;
+  /// The facets of other polygons that face the same way and lie in its plane but for rounding, not exactly, ascending:
+  /// of two of these the one hides the other that lies before it, here the one and there the other where they cross.
+  std::span<const std::uint32_t> level_with(std::uint32_t facet) const { return lying_on_[facet].level; }
 
   /// The contacts of two facets, between points of which nothing else stands.
   class Pair {
@@ -66,9 +71,11 @@ class Contacts {
   bool reaches(std::uint32_t facet, const Plane& plane) const;
   bool lies_in(std::uint32_t facet, const Plane& plane) const;
 
-  /// The facets that lie on one: against it up to rounding; exactly, solids; exactly, others.
+  /// The facets that lie on one: against it up to rounding; exactly, solids; exactly, others; and level_with it.
   struct LyingOn {
-    std::vector<std::uint32_t> touching, burying, overlying;
+    std::vector<std::uint32_t> touching, burying, overlying, level;
+
+    bool empty() const { return touching.empty() && burying.empty() && overlying.empty() && level.empty(); }
   };
   LyingOn find_lying_on(std::uint32_t facet) const;
 

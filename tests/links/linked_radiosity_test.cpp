@@ -145,6 +145,36 @@ TEST(LinkedRadiosity, LightThatComesLaterFindsWhatWasSkippedBefore) {
   EXPECT_LT(error_of(links), 1e-3);
 }
 
+// A tile comes close to a small lamp that is dark then: its form factor from before says nothing of what it receives
+// once the lamp is on.
+TEST(LinkedRadiosity, LightThatComesLaterFindsWhatCameNearBefore) {
+  const auto square = [](double low, double high, double z) {
+    Surface s;
+    s.polygon.outer = {{low, low, z}, {high, low, z}, {high, high, z}, {low, high, z}};
+    s.material = 2;
+    return s;
+  };
+  Scene scene = empty_room();
+  scene.surfaces[1].material = 0;
+  add(scene, "bulb", box_faces({0.1, 0.1, 0.1}, {0.11, 0.11, 0.11}, 3, 0));
+  Surface lamp = square(1.49, 1.51, 2.9);
+  std::ranges::reverse(lamp.polygon.outer);
+  add(scene, "lamp", {lamp});
+  add(scene, "tile", {square(1.4, 1.6, 0.1)});
+  LinkOptions options = coarse();
+  options.B_eps = 1e-4;
+  LinkedRadiosity links(scene, options);
+  links.build();
+  links.update(std::vector<Edit>{move_to(3, {0, 0, 2.77})}, LinkMethod::hvt_peu);
+  links.update(std::vector<Edit>{{Operation::change, 2, {}, {}, {{MaterialChange::kEvery, 3}}}}, LinkMethod::hvt_peu);
+  const std::vector<double> truth = links.converged();
+  for (const Root& root : links.tree().roots()) {
+    if (root.object != 3) continue;
+    EXPECT_GT(truth[root.node_first], 0.01);
+    EXPECT_NEAR(links.radiosity().B()[root.node_first], truth[root.node_first], 1e-2 * truth[root.node_first]);
+  }
+}
+
 TEST(LinkedRadiosity, RefinementEndsWhenAskedAndWhereMemoryEnds) {
   LinkOptions options = coarse();
   LinkedRadiosity whole(room_with_things(), options), part(room_with_things(), options);
