@@ -15,6 +15,7 @@
 #include "src/scene/object_materials.h"
 #include "src/scene/placement.h"
 #include "src/scene/scene_extent.h"
+#include "src/scene/text_cursor.h"
 #include "src/scene/toml_table.h"
 
 namespace exitance {
