@@ -61,7 +61,7 @@ Refinement times(double share, const Refinement& refinement) {
 
 std::vector<Question> questions(bool reduced) {
   const std::vector<double> B_eps{0.1, 0.3, 1, 3, 10};
-  const Refinement box{6.3e-4, 0.0115}, hall{8.25e-5, 0.015}, cube{6e-4, 0.01};
+  const Refinement box{6.3e-4, 0.0115}, hall{8.25e-5, 0.015}, cube{6e-4, 0.01}, robot{4e-4, 0.06};
   if (reduced) {
     return {
         {"box", "box reduced", squares(1.5, 0), {squares(1.5, 0)}, {times(16, box)}, {0.3, 1}, 0, times(4, box), 2}};
@@ -90,12 +90,12 @@ std::vector<Question> questions(bool reduced) {
            times(0.25, hall)},
           {"robot",
            "robot",
-           squares(0.514, 0.0056),
-           {squares(0.514, 0.0224), squares(0.257, 0.0056)},
-           {{0.1, 1}},
-           {0.3, 1, 3},
+           squares(0.514, 0.0056, 1),
+           {squares(0.514, 0.0056, 1)},
+           {robot},
+           {0.3, 3},
            0,
-           {0.02, 0.2},
+           times(0.25, robot),
            2,
            1200}};
 }

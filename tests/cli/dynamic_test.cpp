@@ -150,7 +150,7 @@ TEST(Dynamic, BadInputAndLimits) {
                                         << "[[event]]\ntime = 4\nobject = \"table top\"\noperation = \"move\"\n";
   const Outcome still = run("dynamic " + (scratch / "still.toml").string() + kQuick + out);
   EXPECT_EQ(still.code, 3);
-  EXPECT_THAT(still.err, HasSubstr("still.toml:102: a move needs"));
+  EXPECT_THAT(still.err, HasSubstr("still.toml:115: a move needs"));
   std::ofstream(scratch / "empty.toml") << "[[material]]\nname = \"grey\"\nrho = 0.5\n[[object]]\nname = \"box\"\n"
                                            "box = {min = [0, 0, 0], max = [1, 1, 1]}\nmaterial = \"grey\"\n"
                                            "absent = true\n[[event]]\ntime = 1\nobject = \"box\"\n"

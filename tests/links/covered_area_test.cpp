@@ -110,6 +110,43 @@ TEST(CoveredArea, IsExactWhereThingsLieOnOthers) {
   EXPECT_EQ(open_area_of(links, 2, kBottom), 0);
 }
 
+// Which of two sheets lies before the other is then a matter of rounding, here this one and there that. What is seen of
+// either has B = 2 in this furnace.
+TEST(CoveredArea, OfSheetsInOnePlaneButForRounding) {
+  for (const double degrees : {0.0, 33.0}) {
+    SCOPED_TRACE(degrees);
+    Scene scene = empty_room();
+    for (Material& material : scene.materials) material = grey(0.5, 1);
+    add(scene, "sheet", {square(0.5, 2, 0, true)});
+    add(scene, "sheet on both", {square(1.25, 2.75, 0, true)});
+    const Placement turn{rotation({1, 2, 3}, degrees), {}};
+    place(scene, turn);
+    LinkOptions options = coarse();
+    options.eps2 = 0.2;
+    options.eps1 = 0.1;
+    options.smallest_area = 0.15;
+    LinkedRadiosity links(scene, options), hvt(scene, options);
+    for (LinkedRadiosity* each : {&links, &hvt}) each->build();
+    double seen = 0, off = 0;
+    for (std::uint32_t r = 0; r < links.tree().roots().size(); ++r) {
+      for (const Link& link : links.links().of_receiver(r)) {
+        const Root& source = links.tree().root(links.tree().node(link.source).root);
+        if (link.ghost || (source.object == 0 && source.surface != kFloor)) continue;
+        const double weight = links.tree().node(link.destination).open_area * link.transfer();
+        seen += weight;
+        off += weight * std::fabs(links.radiosity().B()[link.source] - 2);
+      }
+    }
+    EXPECT_NEAR(seen, 9, 0.4);
+    EXPECT_LT(off, 0.1 * seen);
+    const std::vector<Edit> edits{move_to(2, turn({-0.5, -0.75, 0}))};
+    links.update(edits, LinkMethod::direct);
+    hvt.update(edits, LinkMethod::hvt);
+    EXPECT_TRUE(same_bits(links.links(), hvt.links()));
+    EXPECT_TRUE(same_bits(links.radiosity().B(), hvt.radiosity().B()));
+  }
+}
+
 // Contact is only up to rounding then, and no quadrilateral is planar.
 TEST(CoveredArea, IsFoundInARoomThatIsTurned) {
   Scene scene = empty_room();
