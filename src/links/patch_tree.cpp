@@ -279,7 +279,9 @@ void PatchTree::set_open_area(std::uint32_t n, std::span<const Lid> before, std:
 }
 
 void PatchTree::open_points(std::uint32_t n, unsigned per_edge, std::vector<NodePoint>& points) const {
-  points_left_open(nodes_[n], per_edge, lids_[nodes_[n].root], points);
+  const Node& node = nodes_[n];
+  const std::span<const Lid> lids = node.covered ? lids_[node.root] : std::span<const Lid>();
+  points_left_open(node, per_edge, lids, points);
 }
 
 void node_points(const Node& node, unsigned per_edge, std::vector<NodePoint>& points) {
