@@ -24,8 +24,8 @@ struct Series {
 };
 
 struct Tables {
-  CsvTable links{{"scene", "share_of_thresholds", "links", "sub_patches", "E-E", "E-O", "O-O", "bytes_per_link",
-                  "seconds_build", "links_per_second", "affected_by_edit", "updated_by_hvt", "seconds_hvt"},
+  CsvTable links{{"scene", "share_of_thresholds", "links", "sub_patches", "E-E", "E-O", "O-O", "bytes_per_record",
+                  "bytes_per_link", "bytes_per_link_after_edit", "seconds_build", "links_per_second", "affected_by_edit", "updated_by_hvt", "seconds_hvt"},
                  {}};
   Plot plot{"Links: building and updating", "links", "processor seconds"};
 };
@@ -39,12 +39,16 @@ void measure(const Series& series, bool reduced, Tables& tables) {
     const LinkCounts counts = radiosity.links().count(radiosity.tree(), scene.moves);
     const auto sub_patches = std::ranges::count(radiosity.nodes_in_use(), 1);
     const LinkUpdate edited = radiosity.update(scene.edits, LinkMethod::hvt);
+    const LinkCounts after = radiosity.links().count(radiosity.tree(), scene.moves);
     const auto links = static_cast<double>(counts.links());
     const auto part = [&](std::uint64_t n) { return digits(static_cast<double>(n) / links); };
     tables.links.rows.push_back({reduced ? series.scene + " reduced" : series.scene, digits(share),
                                  fmt::format("{}", counts.links()), fmt::format("{}", sub_patches),
                                  part(counts.environment), part(counts.mixed), part(counts.dynamic),
-                                 digits(static_cast<double>(counts.bytes) / links), digits(built.cpu_seconds),
+                                 digits(static_cast<double>(counts.bytes) / (links + static_cast<double>(counts.ghost))),
+                                 digits(static_cast<double>(counts.bytes) / links),
+                                 digits(static_cast<double>(after.bytes) / static_cast<double>(after.links())),
+                                 digits(built.cpu_seconds),
                                  digits(links / built.cpu_seconds), part(edited.work.links_affected),
                                  part(edited.work.links_updated), digits(edited.cpu_seconds)});
     build.emplace_back(links, built.cpu_seconds);
@@ -67,8 +71,8 @@ int run(int argc, char** argv) {
   if (wanted.reduced()) {
     measure({"box", {8, 4}}, wanted.reduced(), tables);
   } else {
-    measure({"box", {4, 2, 1, 0.5, 0.25, 0.115}}, wanted.reduced(), tables);
-    measure({"hall", {4, 1, 0.5, 0.25, 0.18}}, wanted.reduced(), tables);
+    measure({"box", {5, 2, 1, 0.5, 0.25, 0.07}}, wanted.reduced(), tables);
+    measure({"hall", {16, 4, 1, 0.5, 0.14}}, wanted.reduced(), tables);
   }
   if (wanted.writes()) {
     tables.links.write(wanted.folder() / "results.csv");

@@ -97,7 +97,7 @@ struct Tables {
 void update(const std::string& name, bool reduced, Tables& tables) {
   const LinkScene scene(name);
   std::vector<Way> ways = {{"direct", LinkMethod::direct}, {"rebuild", LinkMethod::rebuild}, {"hvt", LinkMethod::hvt}};
-  for (const double share : {0.0, 0.1, 0.3, 1.0, 3.0, 10.0})  // of eps2
+  for (const double share : {0.0, 0.01, 0.03, 0.1, 0.3, 1.0})  // of eps2
     ways.push_back({fmt::format("hvt-peu {:g}", share), LinkMethod::hvt_peu, share * options_of(scene, reduced).eps2});
 
   LinkOptions finer_options = options_of(scene, reduced);

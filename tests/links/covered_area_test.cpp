@@ -196,8 +196,8 @@ TEST(CoveredArea, FollowsEdits) {
     SCOPED_TRACE(c.name);
     const auto last = static_cast<std::uint32_t>(c.scene.objects.size() - 1);
     LinkOptions options = coarse();
-    options.eps2 = 0.02;
-    options.eps1 = 0.012;
+    options.eps2 = 0.1;
+    options.eps1 = 0.06;
     options.smallest_area = 0.04;
     LinkedRadiosity direct(c.scene, options), hvt(c.scene, options), shot(c.scene, options), stays(c.scene, options);
     for (LinkedRadiosity* links : {&direct, &hvt, &shot, &stays}) links->build();

@@ -29,8 +29,8 @@ struct Stored {
   Stored() {
     options.mesh.patch_size = 1;
     options.smallest_area = 0.1;
-    options.eps2 = 0.02;
-    options.eps1 = 0.01;
+    options.eps2 = 0.1;
+    options.eps1 = 0.05;
   }
   std::vector<Edit> edits(std::size_t event) const { return {given.events[event].edit}; }
 };

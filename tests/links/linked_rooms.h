@@ -19,8 +19,8 @@ inline Scene room_with_things() {
 
 inline LinkOptions coarse() {
   LinkOptions options;
-  options.eps2 = 0.01;
-  options.eps1 = 0.005;
+  options.eps2 = 0.05;
+  options.eps1 = 0.025;
   options.smallest_area = 0.02;
   options.tolerance = 1e-9;
   return options;
