@@ -22,6 +22,22 @@ PointFormFactor ask(const std::vector<Polygon>& polygons, const Vec3& x, const V
   return view.form_factor({soup.first_facet(static_cast<std::uint32_t>(polygons.size()) - 1), {}});
 }
 
+TEST(Viewpoint, SaysWhichSideOfASourceItSeesAndThatItIsSeenEdgeOn) {
+  const Polygon floor{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {}};
+  const auto side_at = [&](double z, bool turned_over) {
+    Polygon source{{{-1, -1, z}, {-1, 1, z}, {1, 1, z}, {1, -1, z}}, {}};  // looks down
+    if (turned_over) std::ranges::reverse(source.outer);
+    return ask({floor, source}, {0, 0, 0}, {0, 0, 1}, {}).side;
+  };
+  EXPECT_EQ(side_at(2, false), Side::front);
+  EXPECT_EQ(side_at(2, true), Side::back);
+  EXPECT_EQ(side_at(0x1p-500, false), Side::front);
+  const Polygon wall{{{0, 1, 0}, {0, 2, 0}, {0, 2, 1}, {0, 1, 1}}, {}};  // its plane goes through the point
+  const PointFormFactor edge_on = ask({floor, wall}, {0, 0, 0}, {0, 0, 1}, {});
+  EXPECT_EQ(edge_on.side, Side::edge_on);
+  EXPECT_EQ(edge_on.F, 0);
+}
+
 // A bent quadrilateral's halves (0 and 1) stand on the source (3); a triangle (2) that shares an edge with half 1 lies
 // in the source's plane, faces the point like half 1, and hides nothing: the shared edge still bounds what half 1
 // hides.
