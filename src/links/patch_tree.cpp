@@ -280,8 +280,8 @@ void PatchTree::set_open_area(std::uint32_t n, std::span<const Lid> before, std:
 
 void PatchTree::open_points(std::uint32_t n, unsigned per_edge, std::vector<NodePoint>& points) const {
   const Node& node = nodes_[n];
-  const std::span<const Lid> lids = node.covered ? lids_[node.root] : std::span<const Lid>();
-  points_left_open(node, per_edge, lids, points);
+  if (!node.covered) return node_points(node, per_edge, points);  // of a tree of which it was not asked, too
+  points_left_open(node, per_edge, lids_[node.root], points);
 }
 
 void node_points(const Node& node, unsigned per_edge, std::vector<NodePoint>& points) {
