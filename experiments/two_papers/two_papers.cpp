@@ -60,8 +60,8 @@ Refinement times(double share, const Refinement& refinement) {
 }
 
 std::vector<Question> questions(bool reduced) {
-  const std::vector<double> B_eps{0.1, 0.3, 1, 3, 10};
-  const Refinement box{6.3e-4, 0.0115}, hall{8.25e-5, 0.015}, cube{6e-4, 0.01}, robot{4e-4, 0.06};
+  const std::vector<double> B_eps{0.01, 0.03, 0.1, 0.3, 1};
+  const Refinement box{3.1e-3, 0.012}, hall{1.4e-3, 0.015}, cube{3e-3, 0.01}, robot{4e-3, 0.06};
   if (reduced) {
     return {
         {"box", "box reduced", squares(1.5, 0), {squares(1.5, 0)}, {times(16, box)}, {0.3, 1}, 0, times(4, box), 2}};
