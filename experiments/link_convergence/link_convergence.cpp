@@ -90,8 +90,7 @@ void converge(const Question& question, Tables& tables) {
                                    fmt::format("{}", counts.links()), fmt::format("{}", found.B.size()),
                                    digits(apart.error), order(all, apart.error), digits(apart.error_worst_1_percent),
                                    order(worst, apart.error_worst_1_percent), digits(apart.pointwise_error),
-                                   order(pointwise, apart.pointwise_error),
-                                   fmt::format("{:.3g}", built.cpu_seconds)});
+                                   order(pointwise, apart.pointwise_error), fmt::format("{:.3g}", built.cpu_seconds)});
     all.points.emplace_back(eps2, apart.error);
     worst.points.emplace_back(eps2, apart.error_worst_1_percent);
     pointwise.points.emplace_back(eps2, apart.pointwise_error);

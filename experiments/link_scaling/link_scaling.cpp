@@ -25,7 +25,8 @@ struct Series {
 
 struct Tables {
   CsvTable links{{"scene", "share_of_thresholds", "links", "sub_patches", "E-E", "E-O", "O-O", "bytes_per_record",
-                  "bytes_per_link", "bytes_per_link_after_edit", "seconds_build", "links_per_second", "affected_by_edit", "updated_by_hvt", "seconds_hvt"},
+                  "bytes_per_link", "bytes_per_link_after_edit", "seconds_build", "links_per_second",
+                  "affected_by_edit", "updated_by_hvt", "seconds_hvt"},
                  {}};
   Plot plot{"Links: building and updating", "links", "processor seconds"};
 };
@@ -42,15 +43,14 @@ void measure(const Series& series, bool reduced, Tables& tables) {
     const LinkCounts after = radiosity.links().count(radiosity.tree(), scene.moves);
     const auto links = static_cast<double>(counts.links());
     const auto part = [&](std::uint64_t n) { return digits(static_cast<double>(n) / links); };
-    tables.links.rows.push_back({reduced ? series.scene + " reduced" : series.scene, digits(share),
-                                 fmt::format("{}", counts.links()), fmt::format("{}", sub_patches),
-                                 part(counts.environment), part(counts.mixed), part(counts.dynamic),
-                                 digits(static_cast<double>(counts.bytes) / (links + static_cast<double>(counts.ghost))),
-                                 digits(static_cast<double>(counts.bytes) / links),
-                                 digits(static_cast<double>(after.bytes) / static_cast<double>(after.links())),
-                                 digits(built.cpu_seconds),
-                                 digits(links / built.cpu_seconds), part(edited.work.links_affected),
-                                 part(edited.work.links_updated), digits(edited.cpu_seconds)});
+    tables.links.rows.push_back(
+        {reduced ? series.scene + " reduced" : series.scene, digits(share), fmt::format("{}", counts.links()),
+         fmt::format("{}", sub_patches), part(counts.environment), part(counts.mixed), part(counts.dynamic),
+         digits(static_cast<double>(counts.bytes) / (links + static_cast<double>(counts.ghost))),
+         digits(static_cast<double>(counts.bytes) / links),
+         digits(static_cast<double>(after.bytes) / static_cast<double>(after.links())), digits(built.cpu_seconds),
+         digits(links / built.cpu_seconds), part(edited.work.links_affected), part(edited.work.links_updated),
+         digits(edited.cpu_seconds)});
     build.emplace_back(links, built.cpu_seconds);
     hvt.emplace_back(links, edited.cpu_seconds);
     fmt::print(stderr, "{}, {} links: built in {:.3f} s, updated in {:.4f} s\n", series.scene, counts.links(),

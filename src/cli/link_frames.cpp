@@ -143,14 +143,12 @@ class Frames {
                       {"bytes", counts.bytes}};
     frame["unit"] = given_.scene.unit;
     if (options_.images) draw(time, elements);
-    result_.summary += fmt::format("frame {:3}  {:>9.4f} s  {:7} of {} links  error {}  of the 1 % {}  {}{}\n",
-                                   result_.frames.size(), update.seconds, update.work.links_updated, counts.links(),
-                                   error ? fmt::format("{:.3g}", error->all) : "-",
-                                   error ? fmt::format("{:.3g}", error->worst_1_percent) : "-",
-                                   left.all > 0 ? fmt::format("left undone {:.2g}, of the 1 % {:.2g}  ", left.all,
-                                                              left.worst_1_percent)
-                                                : "",
-                                   fmt::join(edits, ", "));
+    result_.summary += fmt::format(
+        "frame {:3}  {:>9.4f} s  {:7} of {} links  error {}  of the 1 % {}  {}{}\n", result_.frames.size(),
+        update.seconds, update.work.links_updated, counts.links(), error ? fmt::format("{:.3g}", error->all) : "-",
+        error ? fmt::format("{:.3g}", error->worst_1_percent) : "-",
+        left.all > 0 ? fmt::format("left undone {:.2g}, of the 1 % {:.2g}  ", left.all, left.worst_1_percent) : "",
+        fmt::join(edits, ", "));
     result_.frames.push_back(std::move(frame));
     options_.finished(result_);
   }

@@ -92,8 +92,12 @@ std::vector<Lid> lids_on(const PolygonSoup& soup, const Contacts& contacts, std:
     const Facet& f = soup.facets()[t];
     lids.push_back(lid_of(soup.corners(f), normal, dot(f.plane.normal, normal) < 0));
   }
+  Loop whole;
+  for (const Corner& c : soup.corners(soup.facets()[facet])) whole.push_back(c.at);
+  const double area = area_of(whole);
   for (const std::uint32_t t : contacts.level_with(facet)) {
     Lid lid = lid_of(soup.corners(soup.facets()[t]), normal, false);
+    if (!overlaps(whole, area, lid)) continue;  // as most do, which only meet along an edge
     if (!lies_before(soup, t, facet)) {
       const PlanePoints& points = soup.facets()[t].plane.points;
       lid.uncertain = {*points.a, *points.b, *points.c};

@@ -1,6 +1,7 @@
 #pragma once
 // The Hierarchical Link Index: a flat record a link, found by its code (Feng et al., section 4 and Table 1).
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -31,6 +32,14 @@ struct Link {
   bool stale = false;    ///< an update left it, and its descendants, as it was, though it may have changed
 
   double transfer() const { return visibility * form_factor; }
+  /// Has a link that is left stale tell that its form factor may be so large, while it brings what it did, to the bit:
+  /// it becomes the next power of two.
+  void raise(double most) {
+    if (most <= form_factor) return;
+    const double brings = transfer();
+    form_factor = std::exp2(std::ceil(std::log2(most)));
+    visibility = brings / form_factor;
+  }
   bool shadow() const { return !ghost && visibility == 0; }
 };
 static_assert(sizeof(Link) <= 48);

@@ -115,7 +115,8 @@ Shaft::Overlap LinkSight::overlap(std::uint32_t item) {
   };
   const PolygonSoup& soup = obstacles_.soup();
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());
-  const bool level = item < facets ? is_level(item) : std::ranges::any_of(soup.shells()[item - facets].facets, is_level);
+  const bool level =
+      item < facets ? is_level(item) : std::ranges::any_of(soup.shells()[item - facets].facets, is_level);
   return level ? Shaft::Overlap::partial : overlap;
 }
 

@@ -37,7 +37,6 @@ struct LinkTask {
   std::span<const std::uint8_t> moved, relit;  ///< by object: whether its geometry, its materials have changed
   std::span<const double> luminance;           ///< of B, by node, as it stood at the edit
   double eps1 = 0, eps2 = 0, B_eps = 0;
-  unsigned points_per_edge = 2;
   LinkScope scope = LinkScope::refinement;
   bool any_stale = false;  ///< whether some link may be stale
   /// Of refinement: the pairs that are to get links, ascending and none twice; null: all that have none.

@@ -87,7 +87,6 @@ LinkTask LinkedRadiosity::task(LinkScope scope) const {
   task.eps1 = options_.eps1 * brightest_;
   task.eps2 = options_.eps2 * brightest_;
   task.B_eps = options_.B_eps * brightest_;
-  task.points_per_edge = options_.points_per_edge;
   task.scope = scope;
   task.any_stale = any_stale_;
   task.most_links = bytes_left() / kBytesALink;
@@ -326,8 +325,8 @@ bool LinkedRadiosity::look_at_pairs(Pending& pending, LinkScope scope, const Lin
   return done;
 }
 
-/// Marks as stale what an interrupted update left, but for what was only to be refined. Pairs that were to get links
-/// get one that brings nothing.
+/// Marks as stale what an interrupted update left, but for what was only to be refined: it tells how much it may bring
+/// in the scene as it is. Pairs that were to get links get one that brings nothing.
 void LinkedRadiosity::mark_pending(LinkIndex& links) const {
   if (pending_->stage == Stage::materials) return;
   std::vector<PendingPair> pairs = pending_->pairs;
@@ -344,9 +343,13 @@ void LinkedRadiosity::mark_pending(LinkIndex& links) const {
         link.destination = tree_.root(receiver).node_first;
         marked.back().links.push_back(link);
       }
-      Link& first = marked.back().links.front();
-      first.stale = true;
-      first.energy = std::max(first.energy, pairs[k].stake / tree_.node(first.destination).area);
+      marked.back().links.front().stale = true;
+      for (Link& link : marked.back().links) {
+        const Node &to = tree_.node(link.destination), &from = tree_.node(link.source);
+        if (!link.ghost && tree_.root(to.root).present && tree_.root(from.root).present)
+          link.raise(most_form_factor(to, from, obstacles_->soup()));
+      }
+      set_energies(std::span(marked.back().links), tree_, radiosity_.luminance());
     }
     links.replace(receiver, marked);
   }
@@ -415,12 +418,15 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
 
 std::vector<double> LinkedRadiosity::left_as_it_was() const {
   std::vector<double> left(tree_.nodes().size());
-  if (!any_stale_) return left;
+  if (!any_stale_ && !pending_) return left;
+  LinkIndex marked;
+  if (pending_) mark_pending(marked = links_);
+  const LinkIndex& all = pending_ ? marked : links_;
   const std::uint32_t bands = radiosity_.bands();
   for (std::uint32_t r = 0; r < tree_.roots().size(); ++r) {
     const Root& root = tree_.root(r);
     if (!root.present) continue;
-    const std::span<const Link> links = links_.of_receiver(r);
+    const std::span<const Link> links = all.of_receiver(r);
     for (std::size_t k = 0, stale_until = 0; k < links.size(); ++k) {
       if (links[k].stale) stale_until = std::max<std::size_t>(stale_until, k + links[k].next);
       if (k < stale_until && !links[k].ghost) left[links[k].destination] += links[k].energy;

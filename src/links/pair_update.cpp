@@ -1,7 +1,6 @@
 #include "src/links/pair_update.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "src/links/push_pull.h"
@@ -25,8 +24,8 @@ PairUpdate::PairUpdate(const LinkTask& task, const ChangedObjects& now, const Ch
       changed_now_(now),
       changed_before_(before),
       shadows_(shadows),
-      sight_(tree_, *task.now, task.points_per_edge) {
-  if (before != nullptr) sight_before_.emplace(tree_, *task.before, task.points_per_edge);
+      sight_(tree_, *task.now, tree_.points_per_edge()) {
+  if (before != nullptr) sight_before_.emplace(tree_, *task.before, tree_.points_per_edge());
 }
 
 LinkWork PairUpdate::work() const {
@@ -54,16 +53,6 @@ double PairUpdate::most_energy(const Ends& ends) const {
   return task_.luminance[ends.source] * most_form_factor(ends);
 }
 
-/// Has a link that is left stale tell how much it may bring once its source is brighter, while it brings what it did: its
-/// form factor becomes the next power of two, by which nothing is rounded.
-void PairUpdate::raise(Link& link, double form_factor) const {
-  if (form_factor <= link.form_factor) return;
-  const double transfer = link.transfer();
-  link.energy = energy({link.destination, link.source}, form_factor);
-  link.form_factor = std::exp2(std::ceil(std::log2(form_factor)));
-  link.visibility = transfer / link.form_factor;
-}
-
 /// Whether what covers the receiver changes what a link, or a descendant of it, brings.
 bool PairUpdate::receives_anew(const Link& link) const {
   const Node& receiver = tree_.node(link.destination);
@@ -85,8 +74,7 @@ bool PairUpdate::wants_refinement(const Ends& ends, LinkCode code, bool blocked)
 
 /// Whether it is to be done, too.
 bool PairUpdate::divides(const Ends& ends, LinkCode code, bool blocked) const {
-  return wants_refinement(ends, code, blocked) &&
-         !(task_.scope == LinkScope::refinement && task_.stop && task_.stop());
+  return wants_refinement(ends, code, blocked) && !(task_.scope == LinkScope::refinement && task_.stop && task_.stop());
 }
 
 /// The larger end, unless it has no children and the other has.
@@ -135,7 +123,8 @@ PairUpdate::Need PairUpdate::need(const PatchPair& pair, std::span<const Link> l
   const bool stale = task_.any_stale && std::ranges::any_of(links, [](const Link& link) { return link.stale; });
   if (!stale && !receives_anew(links.front()) && !shadows_->may_change(pair.receiver, pair.source))
     return Need::nothing;
-  const bool skips = only_significant() && is_insignificant(links.front()) && !receives_anew(links.front());
+  // What receives anew is raised where it is left, by update().
+  const bool skips = only_significant() && links.front().energy < task_.B_eps && !receives_anew(links.front());
   return skips ? Need::skip : Need::work;
 }
 
@@ -205,8 +194,10 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
   const auto leave_stale = [&](std::optional<double> form_factor = {}) {
     Link& left = out_.emplace_back(link);
     left.stale = true;
-    if (!link.ghost && !only_refines() && (renewed || receives_anew(link)))
-      raise(left, form_factor ? *form_factor : most_form_factor(ends));
+    if (!link.ghost && !only_refines() && (renewed || receives_anew(link))) {
+      left.raise(form_factor ? *form_factor : most_form_factor(ends));
+      left.energy = energy(ends, left.form_factor);
+    }
     copy(old.subspan(1));
     changed_ = true;
     ++work_.skipped;
@@ -237,11 +228,11 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     here.affected = evaluate = true;
     may_change = task_.scope != LinkScope::values;
   } else {
-    if (only_significant() && is_insignificant(link)) return leave_stale();
-    const bool anew = receives_anew(link);
     const bool has_changed = task_.before != nullptr;
     const bool has_stale = task_.any_stale && std::ranges::any_of(old, [](const Link& l) { return l.stale; });
     if (!has_changed && !tests_all() && !has_stale) return copy(old);
+    if (only_significant() && is_insignificant(link)) return leave_stale();
+    const bool anew = receives_anew(link);
     if (has_changed && !here.blocked) {
       here.before =
           root || !alone()

@@ -2,9 +2,9 @@
 // What becomes of the links between two patches: shadow detection, un-refinement and refinement (Feng et al., sections
 // 3, 5 and 6.1).
 //
-// F, by which B F is held against eps1 and eps2, is the bound of most_form_factor: no point of its receiver gets more by
-// a link that stands. The form factor itself, a mean, would let stand what is bright for some of a large receiver and
-// dark for most of it.
+// F, by which B F is held against eps1 and eps2, is the bound of most_form_factor: no point of its receiver gets more
+// by a link that stands and could be divided. The form factor itself, a mean, would let stand what is bright for some
+// of a large receiver and dark for most of it.
 //
 // The listing of section 3 puts links that nothing affects into the shadow set; they keep their kind here, as is meant.
 // A ghost is un-refined when B F falls below eps1 and nothing below it is refined; the listing asks its children.
@@ -72,7 +72,6 @@ class PairUpdate {
   double energy(const Ends& ends, double form_factor) const;
   double most_form_factor(const Ends& ends) const;
   double most_energy(const Ends& ends) const;
-  void raise(Link& link, double form_factor) const;
   bool receives_anew(const Link& link) const;
   bool is_insignificant(const Link& link) const;
   std::optional<LinkCode::End> divided_end(const Ends& ends, LinkCode code) const;

@@ -156,6 +156,7 @@ void PatchTree::append(const std::vector<Node>& root_nodes, const std::vector<st
     root.node_count = static_cast<std::uint32_t>(nodes_.size()) - root.node_first;
     roots_.push_back(root);
   }
+  lids_.resize(roots_.size());
 }
 
 void PatchTree::place_children(std::uint32_t node) {
@@ -214,7 +215,6 @@ void PatchTree::change_geometry(const EditedScene& scene, const PolygonSoup& sou
 }
 
 void PatchTree::cover(const PolygonSoup& soup, const Contacts& contacts) {
-  lids_.resize(roots_.size());
   for (std::uint32_t r = 0; r < roots_.size(); ++r) {
     Root& root = roots_[r];
     const auto nodes = std::span(nodes_).subspan(root.node_first, root.node_count);
@@ -267,21 +267,19 @@ void PatchTree::set_open_area(std::uint32_t n, std::span<const Lid> before, std:
     double open = 0;
     node.covered = false;
     for (std::uint32_t child = node.first_child; child < node.first_child + 4; ++child) {
-      set_open_area(child, before, lids_here, changed_here);
+      set_open_area(child, before, lids, changed_here);
       open += nodes_[child].open_area;
       node.covered = node.covered || nodes_[child].covered;
     }
     node.open_area = node.covered ? open : node.area;
   }
-  points_left_open(node, options_.points_per_edge, lids_here, points);
+  points_left_open(node, options_.points_per_edge, lids, points);
   node.receives_anew =
       node.covered != was_covered || !std::ranges::equal(points, points_before, {}, &NodePoint::at, &NodePoint::at);
 }
 
 void PatchTree::open_points(std::uint32_t n, unsigned per_edge, std::vector<NodePoint>& points) const {
-  const Node& node = nodes_[n];
-  if (!node.covered) return node_points(node, per_edge, points);  // of a tree of which it was not asked, too
-  points_left_open(node, per_edge, lids_[node.root], points);
+  points_left_open(nodes_[n], per_edge, lids_[nodes_[n].root], points);
 }
 
 void node_points(const Node& node, unsigned per_edge, std::vector<NodePoint>& points) {

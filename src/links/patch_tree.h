@@ -51,11 +51,11 @@ struct NodePoint {
   double weight = 0;
 };
 
-/// Where nodes end: a node whose quarters would be smaller than this on average has no children [m², > 0].
 struct TreeOptions {
   MeshOptions mesh;  ///< what the patches are; elements_per_edge does not count
+  /// Where nodes end: one whose quarters would be smaller than this on average has no children [m², > 0].
   double smallest_area = 1;
-  unsigned points_per_edge = 2;  ///< squared, the points by which nodes receive (Node::receives_anew)
+  unsigned points_per_edge = 2;  ///< 1 … 20; squared, the points by which nodes receive
 };
 
 /// A quadtree a patch: every node that is not too small has four children, whether links reach them or not, so that a
@@ -78,9 +78,12 @@ class PatchTree {
   /// by clipping, to 2^-30 of an area, of what lies in their planes exactly or but for rounding. Contacts are those of
   /// the soup.
   void cover(const PolygonSoup& soup, const Contacts& contacts);
-  /// The points by which a node receives: those of node_points that nothing covers, or where there are none of twice,
-  /// four times … as many an edge, up to 20. Their weights sum to 1; none where nothing, or next to it, is open.
+  /// The points by which a node receives: those of node_points that nothing covers (cover), or where there are none of
+  /// twice, four times … as many an edge, up to 20. Their weights sum to 1; none where nothing, or next to it, is open.
   void open_points(std::uint32_t node, unsigned per_edge, std::vector<NodePoint>& points) const;
+
+  /// By how many links between patches receive; Node::receives_anew is of these.
+  unsigned points_per_edge() const { return options_.points_per_edge; }
 
   std::span<const Node> nodes() const { return nodes_; }
   std::span<const Root> roots() const { return roots_; }

@@ -431,9 +431,6 @@ std::vector<double> row_sums(const LinkIndex& links, const ClusterLinks& cluster
   return sums;
 }
 
-namespace {
-
-/// Of links with all their descendants.
 void set_energies(std::span<Link> links, const PatchTree& tree, std::span<const double> luminance) {
   for (std::size_t i = links.size(); i-- > 0;) {
     Link& link = links[i];
@@ -447,8 +444,6 @@ void set_energies(std::span<Link> links, const PatchTree& tree, std::span<const 
       link.energy = std::max(link.energy, links[k].energy);
   }
 }
-
-}  // namespace
 
 void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance) {
   for_each_root(tree, [&](std::uint32_t r) { set_energies(links.energies_of(r), tree, luminance); });

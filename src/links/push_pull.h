@@ -105,11 +105,12 @@ class NodeRadiosity {
 /// By node: Σ F over its links, those of the nodes above it and those of clusters.
 std::vector<double> row_sums(const LinkIndex& links, const ClusterLinks& clusters, const PatchTree& tree);
 
-/// Sets the energy of every link, B F of its source; or of all links from some patches. REQUIRES of the first: the
-/// index keeps no changes.
+/// Sets the energy of every link, B F of its source; or of all links from some patches; or of links with all their
+/// descendants. REQUIRES of the first: the index keeps no changes.
 void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance);
 void set_energies(LinkIndex& links, const PatchTree& tree, std::span<const double> luminance,
                   std::span<const std::uint32_t> sources);
+void set_energies(std::span<Link> links, const PatchTree& tree, std::span<const double> luminance);
 
 /// Form factor by which a link's energy is judged: form_factor itself; where no point of the receiver lies in front of
 /// the source, but some of what is open of it may, what a small source at the distance of the nodes' middles would

@@ -29,7 +29,9 @@ std::optional<fs::path> end_of_links(fs::path path) {
     const fs::path real_folder = fs::canonical(folder.empty() ? "." : folder, failed);
     if (failed) break;
     if (real_folder.native().starts_with("/proc/")) return std::nullopt;
-    path = folder / fs::read_symlink(path, failed);
+    const fs::path to = fs::read_symlink(path, failed);
+    if (failed) break;
+    path = folder / to;
   }
   return path;
 }

@@ -406,13 +406,14 @@ PairOptions pair_options_for(double error) {
 
 void clear_finished_checkpoint(const std::filesystem::path& checkpoint) {
   const std::filesystem::path mark = mark_of_end(checkpoint);
-  std::error_code ignored;
+  std::error_code failed, ignored;
   if (std::filesystem::exists(mark, ignored)) {
     std::vector<std::filesystem::path> levels;
-    for (std::filesystem::directory_iterator entry(checkpoint, ignored), end; !ignored && entry != end;
-         entry.increment(ignored)) {
+    for (std::filesystem::directory_iterator entry(checkpoint, failed), end; !failed && entry != end;
+         entry.increment(failed)) {
       if (std::error_code no_folder; entry->is_directory(no_folder)) levels.push_back(entry->path());
     }
+    if (failed) return;  // the mark stays, so that a later run removes them
     for (const std::filesystem::path& level : levels) Checkpoint(level, "").remove();
     std::filesystem::remove(mark, ignored);
   }

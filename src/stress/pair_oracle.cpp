@@ -190,15 +190,15 @@ PairOracle::PairOracle(const Question& given, Care care) : care_(care) {
   if (of_source) source_ = facets_of(question.source);
 }
 
-/// What of a piece contacts leave. They are taken out of the hiders, but for whole solids that stand on the piece; so is
-/// what lies behind it.
+/// What of a piece contacts leave. They are taken out of the hiders, but for whole solids that stand on the piece; so
+/// is what lies behind it.
 std::vector<ExactLoop> PairOracle::uncovered(const Piece& piece, std::vector<Hider>& hiders,
                                              long double& rounding) const {
   std::vector<ExactLoop> left{piece.loop};
   const double near = kContact * size_;
   std::erase_if(hiders, [&](const Hider& hider) {
-    // A solid behind the piece hides what little of it rises in front, by rounding, and no more.
-    bool is_contact = std::ranges::all_of(hider.faces, [&](const Piece& face) {
+    // What lies behind the piece hides what little of it rises in front, by rounding, and no more; so does a contact.
+    bool hides_nothing = std::ranges::all_of(hider.faces, [&](const Piece& face) {
       return std::ranges::all_of(face.loop, [&](const ExactPoint& p) { return height(piece.plane, p) <= near; });
     });
     for (const Piece& face : hider.faces) {
@@ -206,13 +206,13 @@ std::vector<ExactLoop> PairOracle::uncovered(const Piece& piece, std::vector<Hid
       const bool faces_it = face.plane.normal * piece.plane.normal < 0;
       const bool is_exact = is_within(piece.plane, face.loop, 0);
       if (hider.faces.size() > 1 && faces_it) continue;  // stands on it: a body that hides all beyond
-      is_contact = is_contact || hider.faces.size() == 1;
+      hides_nothing = hides_nothing || hider.faces.size() == 1;
       rounding += 4 * near * size_;
       if (is_exact && hider.solid && !faces_it) continue;
       const ExactLoop cover = is_exact || (hider.solid && faces_it) ? face.loop : clipped(face.loop, piece.plane);
       if (has_area(cover)) subtract(left, walls_over(cover, piece.plane.normal));
     }
-    return is_contact;
+    return hides_nothing;
   });
   return left;
 }

@@ -198,7 +198,7 @@ class StressRun {
           state_.unjudged.push_back({number, contender.name + ": " + *exception});
         }
         tally.wrong = verdict.is_wrong ? 1 : 0;
-        tally.classes = opinion.classes.size();
+        if (tally.unjudged == 0) tally.classes = opinion.classes.size();
         tally.worst_error = verdict.error;
         tally.worst_relative_error = verdict.relative_error;
         if (verdict.is_wrong) wrong.push_back({number, c, names_.size()});

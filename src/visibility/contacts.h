@@ -38,7 +38,8 @@ class Contacts {
   bool may_be_covered(std::uint32_t facet) const {
     return may_be_overlaid(facet) || burying_count(facet) > 0 || !level_with(facet).empty();
   }
-  /// The facets that cover some of it by lying in its plane, exactly or nearly, in no particular order.
+  /// The facets that cover some of it by lying in its plane, exactly or, against it, nearly, in no particular order;
+  /// but for those that are level_with it.
   std::vector<std::uint32_t> covering(std::uint32_t facet) const;
   /// The facets of other polygons that face the same way and lie in its plane but for rounding, not exactly, ascending:
   /// of two of these the one hides the other that lies before it, here the one and there the other where they cross.

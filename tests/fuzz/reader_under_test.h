@@ -18,7 +18,8 @@ std::span<const ReaderUnderTest> readers_under_test();
 
 std::string seed_path(const std::string& name);
 
-/// Puts into the folder what some readers want beside their file: a sound mesh and its materials, a report of a solution.
+/// Puts into the folder what some readers want beside their file: a sound mesh and its materials, a report of a
+/// solution.
 void copy_companions(const std::string& folder);
 
 /// Writes the bytes into the folder and reads them. What a reader may throw is caught: InputError, LimitError, and

@@ -51,8 +51,8 @@ double summed_form_factor(const Vec3& point, const Vec3& normal, const Node& sou
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       const double u = (i + 0.5) / n, v = (j + 0.5) / n;
-      const Vec3 at = (1 - u) * ((1 - v) * source.corner[0] + v * last) +
-                      u * ((1 - v) * source.corner[1] + v * source.corner[2]);
+      const Vec3 at =
+          (1 - u) * ((1 - v) * source.corner[0] + v * last) + u * ((1 - v) * source.corner[1] + v * source.corner[2]);
       const Vec3 d = at - point;
       const double square = dot(d, d), to = dot(normal, d), from = -dot(its_normal, d);
       if (to > 0 && from > 0) sum += to * from / (std::numbers::pi * square * square);
