@@ -67,10 +67,10 @@ bool RootShadows::reaches(std::uint32_t r, const std::vector<HalfSpace>& region)
   const auto beyond = [&](const HalfSpace& h) {
     const double height = dot(h.normal, ball.centre) - h.offset;
     if (height >= 0) return false;
-    return height < -ball.radius - 1e-12 * std::fabs(h.offset) ||
-           std::ranges::all_of(tree_.node(tree_.root(r).node_first).loop(), [&](const Vec3& v) {
-             return dot(h.normal, v) < h.offset - 1e-12 * std::fabs(h.offset);
-           });
+    const double rounding = 1e-12 * (std::fabs(h.offset) + norm(ball.centre) + ball.radius);
+    return height < -ball.radius - rounding ||
+           std::ranges::all_of(tree_.node(tree_.root(r).node_first).loop(),
+                               [&](const Vec3& v) { return dot(h.normal, v) < h.offset - rounding; });
   };
   return std::ranges::none_of(region, beyond);
 }

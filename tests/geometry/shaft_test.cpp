@@ -516,5 +516,37 @@ TEST(Shaft, NeighboursOfRoundedPiecesStayOutside) {
   }
 }
 
+/// Pieces of two walls of a turned room that meet in a corner: all else is beyond it, but in front of both.
+TEST(Shaft, WhatLiesBeyondPiecesThatMeetInACornerStaysOutside) {
+  Things things;
+  things.add({{{0, 0, 0},
+               {1.5916483741032423, -1.1166531878965318, 2.0542008448968709},
+               {1.4097486983335219, 0.69865299146022042, 1.2347034482298276}},
+              {}},
+             Role::patch);
+  things.add({{{1.4097486983335219, 0.69865299146022042, 1.2347034482298276},
+               {1.5916483741032423, -1.1166531878965318, 2.0542008448968709},
+               {0.18469382064324791, -0.65130657222937538, 3.3973059829204404}},
+              {}},
+             Role::patch);
+  things.add({{{1.0178669613949323, -0.77932156396400432, 1.7085387759255997},
+               {1.1940855486866226, -0.69198994003147674, 1.8628767069543279},
+               {1.2395604676290528, -1.1458164848706649, 2.0677510561210886}},
+              {}},
+             Role::sheet);
+  const PolygonSoup soup(things.polygons, things.roles);
+  const std::vector<Vec3> a{{1.500698536218382, -0.20900009821815568, 1.6444521465633493},
+                            {0.70487434916676095, 0.34932649573011021, 0.61735172411491379},
+                            {0.79582418705162117, -0.55832659394826589, 1.0271004224484355}},
+      b{{1.4097486983335219, 0.69865299146022042, 1.2347034482298276},
+        {1.500698536218382, -0.20900009821815568, 1.6444521465633493},
+        {0.79722125948838496, 0.023673209615422519, 2.3160047155751338}};
+  Shaft shaft(soup, {0, a}, {1, b});
+  ASSERT_TRUE(shaft.face_each_other());
+  std::vector<std::uint32_t> found;
+  EXPECT_EQ(shaft.find_occluders(found), Overlap::outside);
+  EXPECT_EQ(shaft.overlap(2), Overlap::outside) << "its every y is less than the ends'";
+}
+
 }  // namespace
 }  // namespace exitance
