@@ -71,8 +71,8 @@ int run(int argc, char** argv) {
   if (wanted.reduced()) {
     measure({"box", {8, 4}}, wanted.reduced(), tables);
   } else {
-    measure({"box", {5, 2, 1, 0.5, 0.25, 0.07}}, wanted.reduced(), tables);
-    measure({"hall", {16, 4, 1, 0.5, 0.14}}, wanted.reduced(), tables);
+    measure({"box", {5, 2, 1, 0.5, 0.25, 0.055}}, wanted.reduced(), tables);
+    measure({"hall", {16, 4, 1, 0.5, 0.11}}, wanted.reduced(), tables);
   }
   if (wanted.writes()) {
     tables.links.write(wanted.folder() / "results.csv");

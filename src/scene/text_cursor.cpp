@@ -43,7 +43,8 @@ std::string read_bytes(const std::filesystem::path& path) {
 
 bool is_file(const std::filesystem::path& path) {
   std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored);
+  const bool is_name = path.native().find('\0') == std::string::npos;  // the system would take what stands before
+  return is_name && std::filesystem::is_regular_file(path, ignored);
 }
 
 TextCursor::TextCursor(std::string file, std::string_view text) : file_(std::move(file)), text_(text) {}

@@ -11,8 +11,8 @@ namespace exitance {
 /// The bytes of a file. Throws InputError when there is none or it cannot be read.
 std::string read_bytes(const std::filesystem::path& path);
 
-/// Whether a name that is given in a file names one, which has an end: no folder, device or pipe, and nothing longer
-/// than names may be.
+/// Whether a name that is given in a file names one, which has an end: no folder, device or pipe, nothing longer
+/// than names may be and nothing with a NUL in it.
 bool is_file(const std::filesystem::path& path);
 
 /// Tokens are separated by blanks; a token that starts with '#' begins a comment, which lasts to the end of the line. A

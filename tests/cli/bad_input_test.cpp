@@ -87,6 +87,8 @@ TEST_F(BadInputTest, NamesThatAreTooLongOrNoFiles) {
   expect_of_scene(3, long_name + ".obj", "no such file");
   expect_of_scene(3, write("long.toml", "[[object]]\nmesh = \"" + long_name + ".obj\"\n"), "long.toml:2: ");
   expect_of_scene(3, write("device.toml", "[[object]]\nmesh = \"/dev/zero\"\n"), "device.toml:2: ");
+  write("room.obj", "v 0 0 0\n");
+  expect_of_scene(3, write("nul.toml", "[[object]]\nmesh = \"room.obj\\u0000beyond\"\n"), "nul.toml:2: ");
   expect(3, "solve " + cube + " -o " + long_name, "too long");
   expect(3, "reference " + cube + " -o " + long_name + ".h5", "too long");
   const Outcome outcome =
