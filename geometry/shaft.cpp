@@ -216,11 +216,11 @@ bool Shaft::enters(std::uint32_t facet) {
   const auto corners = soup_.corners(f);
   const auto at_sight = region_.meets_at_sight(corners, counts_);
   if (at_sight == false || beside(facet)) return false;
+  if (!at_sight && !region_.meets(corners, f.plane.points, counts_)) return false;
   // Where the ends meet, or reach below each other's planes, the sides alone do not bound them.
   Box box;
   for (const Corner& c : corners) box.extend(c.at);
-  if (!box_.overlaps(box)) return false;
-  return at_sight ? *at_sight : region_.meets(corners, f.plane.points, counts_);
+  return box_.overlaps(box);
 }
 
 Shaft::Overlap Shaft::overlap(std::uint32_t item) {
