@@ -335,8 +335,9 @@ std::uint64_t NodeRadiosity::shoot(const LinkIndex& links, double share, const A
     for (std::size_t n = first, last = n + tree_->root(r).node_count; n < last; ++n) {
       const Node& node = tree_->nodes()[n];
       if (weighs_anew_[r] == 0 && node.has_children()) continue;
-      for (std::uint32_t b = 0; b < bands_; ++b)
-        sum += node.open_area * weights_[b] * std::fabs(unshot_[n * bands_ + b]);
+      // What is covered just now is to be taken back where rounding still lets it be seen.
+      const double area = node.open_area > 0 ? node.open_area : node.area;
+      for (std::uint32_t b = 0; b < bands_; ++b) sum += area * weights_[b] * std::fabs(unshot_[n * bands_ + b]);
     }
     unshot[r] = sum;
   };
