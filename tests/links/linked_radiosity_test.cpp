@@ -167,22 +167,38 @@ TEST(LinkedRadiosity, ASolidThatTwoObjectsCloseChangesWithEither) {
   }
 }
 
-// A move while there is little light is not worth looking at, until a lamp is switched on.
-TEST(LinkedRadiosity, LightThatComesLaterFindsWhatWasSkippedBefore) {
+/// An empty room that a bulb lights, object 1.
+Scene dim_room() {
   Scene scene = empty_room();
   scene.surfaces[1].material = 0;
   add(scene, "bulb", box_faces({0.1, 0.1, 0.1}, {0.11, 0.11, 0.11}, 3, 0));
+  return scene;
+}
+
+/// Moves an object, and then switches a lamp on, by PEU.
+void move_and_light(LinkedRadiosity& links, const Edit& move, std::uint32_t lamp) {
+  links.build();
+  links.update(std::vector<Edit>{move}, LinkMethod::hvt_peu);
+  links.update(std::vector<Edit>{{Operation::change, lamp, {}, {}, {{MaterialChange::kEvery, 3}}}},
+               LinkMethod::hvt_peu);
+}
+
+LinkOptions with_threshold(double B_eps) {
+  LinkOptions options = coarse();
+  options.B_eps = B_eps;
+  return options;
+}
+
+// A move while there is little light is not worth looking at, until a lamp is switched on.
+TEST(LinkedRadiosity, LightThatComesLaterFindsWhatWasSkippedBefore) {
+  Scene scene = dim_room();
   add(scene, "box", box_faces({0.8, 0.8, 1}, {1.8, 1.8, 1.6}, 2, 0));
   Surface lamp;
   lamp.polygon.outer = {{1, 1, 2.99}, {1, 2, 2.99}, {2, 2, 2.99}, {2, 1, 2.99}};
   lamp.material = 2;
   add(scene, "lamp", {lamp});
-  LinkOptions options = coarse();
-  options.B_eps = 1e-4;
-  LinkedRadiosity links(scene, options);
-  links.build();
-  links.update(std::vector<Edit>{move_to(2, {0.4, 0.4, 0.2})}, LinkMethod::hvt_peu);
-  links.update(std::vector<Edit>{{Operation::change, 3, {}, {}, {{MaterialChange::kEvery, 3}}}}, LinkMethod::hvt_peu);
+  LinkedRadiosity links(scene, with_threshold(1e-4));
+  move_and_light(links, move_to(2, {0.4, 0.4, 0.2}), 3);
   EXPECT_LT(error_of(links), 1e-3);
 }
 
@@ -195,19 +211,13 @@ TEST(LinkedRadiosity, LightThatComesLaterFindsWhatCameNearBefore) {
     s.material = 2;
     return s;
   };
-  Scene scene = empty_room();
-  scene.surfaces[1].material = 0;
-  add(scene, "bulb", box_faces({0.1, 0.1, 0.1}, {0.11, 0.11, 0.11}, 3, 0));
+  Scene scene = dim_room();
   Surface lamp = square(1.49, 1.51, 2.9);
   std::ranges::reverse(lamp.polygon.outer);
   add(scene, "lamp", {lamp});
   add(scene, "tile", {square(1.4, 1.6, 0.1)});
-  LinkOptions options = coarse();
-  options.B_eps = 1e-4;
-  LinkedRadiosity links(scene, options);
-  links.build();
-  links.update(std::vector<Edit>{move_to(3, {0, 0, 2.77})}, LinkMethod::hvt_peu);
-  links.update(std::vector<Edit>{{Operation::change, 2, {}, {}, {{MaterialChange::kEvery, 3}}}}, LinkMethod::hvt_peu);
+  LinkedRadiosity links(scene, with_threshold(1e-4));
+  move_and_light(links, move_to(3, {0, 0, 2.77}), 2);
   const std::vector<double> truth = links.converged();
   for (const Root& root : links.tree().roots()) {
     if (root.object != 3) continue;
