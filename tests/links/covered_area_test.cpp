@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "src/links/hierarchical_solution.h"
+#include "src/scene/scene_file.h"
 #include "tests/links/linked_rooms.h"
+#include "tests/output/scratch_folder.h"
 
 namespace exitance {
 namespace {
@@ -145,6 +148,48 @@ TEST(CoveredArea, OfSheetsInOnePlaneButForRounding) {
     EXPECT_TRUE(same_bits(links.links(), hvt.links()));
     EXPECT_TRUE(same_bits(links.radiosity().B(), hvt.radiosity().B()));
   }
+}
+
+// A sheet comes to lie over all of another, which can still be seen past it by rounding: its light has to go.
+TEST(CoveredArea, IsTakenBackWhereRoundingLetsItBeSeen) {
+  constexpr const char* kScene = R"(
+[[material]]
+name = "grey"
+rho = 0.5
+E = 1
+[[object]]
+name = "moving"
+material = "grey"
+polygons = [[[0, 0, 0], [0, 0.25, 0], [0, 0.25, 0.75], [0, 0, 0.75]]]
+two_sided = true
+rotate = {axis = [0.3, -1, 0.2], degrees = 77}
+translate = [-1.3413494504540178, 1.1649691371645226, 1.2118698615036398]
+[[object]]
+name = "covered"
+material = "grey"
+polygons = [[[0.75, 1.5, 1.5], [0.75, 1.75, 1.5], [0.75, 1.75, 1.75], [0.75, 1.5, 1.75]]]
+two_sided = true
+rotate = {axis = [0.3, -1, 0.2], degrees = 77}
+translate = [-0.025601660279609764, 0.22209798023284893, 0.27389239158365913]
+[[object]]
+name = "room"
+material = "grey"
+box = {min = [0, 0, 0], max = [2, 2, 2]}
+flip = true
+rotate = {axis = [0.3, -1, 0.2], degrees = 77}
+)";
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "scene.toml") << kScene;
+  LinkOptions options;
+  options.eps2 = 0.2;
+  options.eps1 = 0.1;
+  options.smallest_area = 0.2;
+  options.B_eps = 0;
+  LinkedRadiosity links(read_dynamic_scene(scratch / "scene.toml", Emission::exitance).scene, options);
+  links.build();
+  const Vec3 by{0.07167015409681847, -0.005610789029253403, 0.23944082370850528};
+  links.update(std::vector<Edit>{move_to(0, by)}, LinkMethod::hvt_peu);
+  EXPECT_LT(error_of(links), 1e-5);
 }
 
 // Contact is only up to rounding then, and no quadrilateral is planar.
