@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <map>
@@ -14,28 +15,29 @@
 #include <vector>
 
 #include "src/cli/console.h"
-#include "src/cli/frame_files.h"
+#include "src/cli/given_options.h"
 #include "src/cli/interrupt.h"
 #include "src/cli/json_text.h"
 #include "src/cli/link_frames.h"
 #include "src/cli/link_settings.h"
 #include "src/cli/memory_limit.h"
 #include "src/cli/number_range.h"
-#include "src/cli/reference_store.h"
+#include "src/cli/shot_frames.h"
 #include "src/cli/verbs.h"
-#include "src/dynamic/converged_reference.h"
-#include "src/dynamic/edit_session.h"
-#include "src/dynamic/picture.h"
+#include "src/output/checkpoint.h"
 #include "src/output/result_folder.h"
 #include "src/output/whole_file.h"
 #include "src/scene/input_error.h"
 #include "src/scene/scene_file.h"
-#include "src/scene/trespass.h"
+#include "src/scene/scene_hash.h"
 
 namespace exitance {
 namespace {
 
-using Json = nlohmann::ordered_json;
+/// Options that change nothing of the work, or the path of a scene, whose contents count.
+constexpr std::array<std::string_view, 7> kOfNoConsequence = {"SCENE",      "json",       "output", "references",
+                                                              "save-every", "time-limit", "threads"};
+
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
@@ -57,6 +59,7 @@ const std::vector<std::pair<const char*, Methods>> kMethodsOfOptions = {
     {"--replay", kByShots},
     {"--references", kByShots},
     {"--elements", kByShots},
+    {"--save-every", kByShots},
     {"--eps", kByLinks},
     {"--eps1", kByLinks},
     {"--min-area", kByLinks},
@@ -124,6 +127,12 @@ class Dynamic {
                     ->check(whole_number_between(1, 65'535));
     verb.add_option("--time-limit", time_limit_, "Seconds after which to end with what there is, exit code 4")
         ->check(positive_number());
+    verb.add_option(
+            "--save-every", save_seconds_,
+            "Seconds after which what has been shot is saved in the folder; more where saving takes over 5 % of "
+            "the time")
+        ->check(number_between(0))
+        ->capture_default_str();
     verb.add_option("--threads", threads_, "Threads; as many as there are cores unless given")
         ->check(whole_number_between(1, kMostThreads));
     verb.add_option("-o,--output", folder_, "Folder for frames.json, frame_*.png and frame_*.vtp")->required();
@@ -141,7 +150,8 @@ class Dynamic {
         "were\n"
         "were missing, but for its further reflection; no reference is needed for them. Where the second is large,\n"
         "as it can be in dark places, a smaller --b-eps is called for.\n"
-        "Each frame is written when it is done; Ctrl-C ends with those so far, exit code 4.\n"
+        "Each frame is written when it is done; Ctrl-C ends with those so far, exit code 4. By shots the same command\n"
+        "goes on from there, and after a crash from what was saved last; another one begins anew.\n"
         "Methods by links link all pairs of patches: clusters of patches are for solve --method hierarchical.");
   }
 
@@ -157,7 +167,7 @@ class Dynamic {
     const DynamicScene given = read_dynamic_scene(path_, Emission::exitance);
     for (const std::string& warning : given.scene.warnings) print_warning(warning);
     if (given.events.empty()) print_warning(fmt::format("{}: has no [[event]]; there is one frame", path_));
-    read_replay();
+    const std::vector<std::uint64_t> replayed = shots_to_replay();
     results_.emplace(folder_);
     if (const auto by_links = link_method_named(method_)) {
       LinkFrameOptions how;
@@ -174,31 +184,32 @@ class Dynamic {
       how.image_size = image_size_;
       how.stop = [this] { return stop(); };
       how.abandon = interrupted;
-      how.finished = [this](const LinkFrames& so_far) {
-        frames_ = so_far.frames;
-        summary_ = so_far.summary;
-        keep_frames();
-      };
+      how.finished = [this](const FrameList& so_far) { keep_frames(so_far); };
+      Checkpoint of_shots(unfinished(), "work links\n", Checkpoint::OtherRun::forgotten);
+      if (of_shots.has_forgotten()) print_warning(of_shots.what_was_forgotten());
       partial_ = follow_links(given, how, results_->draft()) == LinksEnd::unfinished || partial_;
       return finish();
     }
     set_options(given.scene);
-
-    store_.emplace(reference_ ? reference_file_ : "");
-    EditSession session(given.scene, options_);
-    std::optional<FrameReferences> references;
-    if (reference_) references.emplace(given.scene, options_, session.solution(), memory_limit_.bytes());
-    frame(given, session, references, 0, {});
-    std::size_t next = 0;
-    while (next < given.events.size() && !stop()) {
-      const double time = given.events[next].time;
-      std::vector<std::string> edits;
-      for (; next < given.events.size() && given.events[next].time == time; ++next)
-        edits.push_back(apply(given.events[next], session, references));
-      frame(given, session, references, time, edits);
-    }
-    const double last = given.events.empty() ? 0 : given.events.back().time;
-    if (work_off_ && !stop()) frame(given, session, references, last, {"work off"});
+    ShotFrameOptions how;
+    how.session = options_;
+    how.method = method_;
+    how.path = path_;
+    how.budget_shots = budget_shots_;
+    if (budget_ms_) how.budget_seconds = *budget_ms_ / 1000;
+    how.replayed = replayed;
+    how.work_off = work_off_;
+    how.references = reference_;
+    how.kept_references = reference_file_;
+    how.memory = memory_limit_.bytes();
+    how.images = images_;
+    how.image_size = image_size_;
+    how.checkpoint = unfinished();
+    how.key = key_of(given) + fmt::format("shots {}\n", fmt::join(replayed, " "));
+    how.save_seconds = save_seconds_;
+    how.stop = [this] { return stop(); };
+    how.finished = [this](const FrameList& so_far) { keep_frames(so_far); };
+    partial_ = follow_shots(given, how, results_->draft()) == ShotsEnd::unfinished;
     finish();
   }
 
@@ -214,19 +225,45 @@ class Dynamic {
   }
 
   /// Whatever happens later, the frames so far are there: first their files, then the list that names them.
-  void keep_frames() {
+  void keep_frames(const FrameList& so_far) {
+    frames_ = so_far;
     results_->publish();
-    write_whole_file(results_->draft() / "frames.json", [&](std::ostream& out) { out << frames_.dump(1) << '\n'; });
+    write_whole_file(results_->draft() / "frames.json",
+                     [&](std::ostream& out) { out << frames_.frames.dump(1) << '\n'; });
     results_->publish();
-    if (store_) store_->save();
+  }
+
+  std::string unfinished() const { return (std::filesystem::path(folder_) / ResultFolder::kUnfinished).string(); }
+
+  /// All that frames show and tell depends on.
+  std::string key_of(const DynamicScene& given) const {
+    std::string key = key_of_options(verb_, kOfNoConsequence) +
+                      fmt::format("scene {}\nmesh {} {} {}\n", scene_hash(given.scene), options_.mesh.patch_size,
+                                  options_.mesh.elements_per_edge, options_.mesh.small_patch);
+    const auto add_camera = [&](double time, const Camera& camera) {
+      key += fmt::format("camera {} {}", time, camera.vertical_fov_degrees);
+      for (const Vec3& at : {camera.eye, camera.target, camera.up}) key += fmt::format(" {} {} {}", at.x, at.y, at.z);
+      key += '\n';
+    };
+    if (given.scene.camera) add_camera(0, *given.scene.camera);
+    for (const CameraAt& at : given.camera_path) add_camera(at.time, at.camera);
+    EditedScene scene(given.scene);
+    for (const Event& event : given.events) {
+      scene.apply(event.edit);
+      key += fmt::format("event {} {} {} {}\n", event.time, name_of(event.edit.operation), event.edit.object,
+                         scene_hash(scene.scene()));
+    }
+    return key;
   }
 
   void finish() {
-    print_results(json_ ? frames_.dump(1) + '\n' : printable(summary_));
+    const std::size_t count = frames_.frames.size();
+    print_results(json_ ? frames_.frames.dump(1) + '\n' : printable(frames_.summary));
     if (partial_) {
-      print_message(frames_.empty() ? "stopped before the first frame was done; nothing was saved"
-                                    : fmt::format("stopped after {} frame{}; the partial result was saved",
-                                                  frames_.size(), frames_.size() == 1 ? "" : "s"));
+      print_message(count == 0 ? "stopped before the first frame was done; nothing was saved"
+                               : fmt::format("stopped after {} frame{}; the partial result was saved{}", count,
+                                             count == 1 ? "" : "s",
+                                             link_method_named(method_) ? "" : ", and the same command goes on"));
       throw CLI::RuntimeError(limit_reached);
     }
   }
@@ -253,115 +290,18 @@ class Dynamic {
     options_.mesh.memory_limit = memory_limit_.bytes();
   }
 
-  void read_replay() {
-    if (replay_.empty()) return;
+  /// By frame; none where none is to be repeated.
+  std::vector<std::uint64_t> shots_to_replay() const {
+    if (replay_.empty()) return {};
     const nlohmann::json frames = read_json(replay_);
     if (!frames.is_array()) throw InputError(replay_, 0, "is no list of frames; name a frames.json");
+    std::vector<std::uint64_t> shots;
     for (const auto& frame : frames) {
       if (!frame.is_object() || !frame.contains("shots") || !frame["shots"].is_number_unsigned())
         throw InputError(replay_, 0, "a frame has no number of \"shots\"; name a frames.json");
-      replayed_.push_back(frame["shots"].get<std::uint64_t>());
+      shots.push_back(frame["shots"].get<std::uint64_t>());
     }
-  }
-
-  std::string apply(const Event& event, EditSession& session, std::optional<FrameReferences>& references) {
-    const auto start = Clock::now();
-    try {
-      session.apply(event.edit);
-    } catch (const InvalidEdit& wrong) {
-      throw InputError(path_, event.line, wrong.what());
-    }
-    edit_seconds_ += seconds_since(start);
-    if (references) references->apply(event.edit);
-    moved_[event.edit.object] = event.line;
-    return fmt::format("{} {}", name_of(event.edit.operation), session.scene().scene().objects[event.edit.object].name);
-  }
-
-  Budget budget() {
-    Budget budget;
-    budget.interrupted = [this] { return stop(); };
-    const std::size_t number = frames_.size();
-    if (!replayed_.empty()) budget.shots = number < replayed_.size() ? replayed_[number] : 0;
-    if (number == 0 || last_) return budget;
-    budget.shots = budget_shots_ ? budget_shots_ : budget.shots;
-    if (budget_ms_) budget.seconds = *budget_ms_ / 1000;
-    return budget;
-  }
-
-  void frame(const DynamicScene& given, EditSession& session, std::optional<FrameReferences>& references, double time,
-             const std::vector<std::string>& edits) {
-    last_ = !edits.empty() && edits.front() == "work off";
-    const SessionWork work = session.work(budget());
-    const double edit_seconds = std::exchange(edit_seconds_, 0), seconds = edit_seconds + work.seconds;
-    const DynamicRadiosity& state = session.solution();
-    // Only now is an object that is selected where it is shown.
-    for (const auto& [object, line] : std::exchange(moved_, {})) {
-      for (const std::string& warning :
-           find_trespass(session.scene(), state.version().soup(), state.version().facet_ranges(), object))
-        print_warning(fmt::format("{}:{}: {}", path_, line, warning));
-    }
-    const std::vector<double> B = state.element_B();
-    std::optional<ConvergenceError> error;
-    if (references && !partial_) {
-      if (const auto reference = store_->find(session, *references, [this] { return stop(); })) {
-        // Of the first frame nothing came before: what changed most is what is brightest.
-        error = convergence_error(state.version(), state.bands(), *reference, reference_before_, B);
-        reference_before_ = *reference;
-      }
-    }
-    Json frame;
-    frame["frame"] = frames_.size();
-    frame["time"] = time;
-    frame["edits"] = edits;
-    frame["method"] = method_;
-    frame["seconds"] = seconds;
-    frame["seconds_edits"] = edit_seconds;
-    frame["shots"] = work.shots();
-    frame["propagation_shots"] = work.propagations;
-    frame["redistribution_shots"] = work.redistributions;
-    frame["gathered_patches"] = work.gatherings;
-    frame["visibility_tests"] =
-        work.propagation.visibility_tests + work.redistribution.visibility_tests + work.gathering.visibility_tests;
-    frame["redistribution_tests"] = work.redistribution.visibility_tests;
-    frame["redistribution_tests_idle"] = work.redistribution.idle_tests;
-    frame["redistribution_tests_idle_patches"] = work.redistribution.idle_patch_tests;
-    frame["elements_kept_in_umbra"] = work.redistribution.kept;
-    frame["error"] = error ? Json(error->all) : Json(nullptr);
-    frame["error_worst_1_percent"] = error ? Json(error->worst_1_percent) : Json(nullptr);
-    frame["reference"] = error ? Json(references->gathers() ? "gathering" : "shots") : Json(nullptr);
-    const bool is_bounded = state.pending_changes() == 0 && !state.has_forgotten();
-    frame["error_bound"] = is_bounded ? Json(state.error_bound()) : Json(nullptr);
-    frame["finished"] = work.finished;
-    frame["propagation_left"] = session.propagation_left();
-    Json log = Json::array();
-    double left = 0;
-    for (const PendingChange& change : session.log()) {
-      log.push_back({{"change", change.name},
-                     {"patches", change.patches},
-                     {"patch", change.patch},
-                     {"energy", change.largest_energy}});
-      left = std::max(left, change.largest_energy);
-    }
-    frame["redistribution_left"] = left;
-    frame["log"] = log;
-    frame["patches"] = state.version().present_patches();
-    frame["elements"] = state.version().present_elements();
-    frame["unit"] = given.scene.unit;
-    if (images_) draw(given, session, time, B);
-    summary_ += fmt::format(
-        "frame {:3}  {:>9.3f} s  {:5} + {:5} shots  error {}  of the 1 % {}  {}\n", frames_.size(), seconds,
-        work.redistributions + work.gatherings, work.propagations, error ? fmt::format("{:.3g}", error->all) : "-",
-        error ? fmt::format("{:.3g}", error->worst_1_percent) : "-", fmt::format("{}", fmt::join(edits, ", ")));
-    frames_.push_back(std::move(frame));
-    keep_frames();
-  }
-
-  void draw(const DynamicScene& given, const EditSession& session, double time, const std::vector<double>& B) const {
-    const DynamicRadiosity& state = session.solution();
-    const Faces faces = faces_of(state.version());
-    write_frame(results_->draft(), given, {frames_.size(), time, faces, state.bands(), B}, [&](const Camera& camera) {
-      return picture(state, B, camera, {image_size_, image_size_});
-    });
+    return shots;
   }
 
   CLI::App& verb_;
@@ -375,19 +315,13 @@ class Dynamic {
   std::optional<std::uint64_t> budget_shots_;
   std::optional<double> budget_ms_, time_limit_;
   std::optional<std::size_t> threads_;
+  double save_seconds_ = 30;
   bool work_off_ = false, reference_ = true, images_ = true, json_ = false;
 
   Clock::time_point start_;
   std::optional<ResultFolder> results_;
-  std::optional<ReferenceStore> store_;
-  double edit_seconds_ = 0;                       // of this frame's edits
-  std::map<std::uint32_t, std::uint32_t> moved_;  // objects of this frame's edits, and the lines of the last of these
-  std::vector<std::uint64_t> replayed_;
-  std::vector<double> reference_before_;
-  Json frames_ = Json::array();
-  std::string summary_;
+  FrameList frames_;
   std::atomic<bool> partial_ = false;  // links ask to stop from all threads
-  bool last_ = false;
 };
 
 }  // namespace

@@ -1,16 +1,23 @@
 #pragma once
-// The picture and the VTP file of one frame of a dynamic scene.
+// Frames of a dynamic scene: what is told of them, the picture and the VTP file of one.
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <span>
+#include <string>
 
 #include "src/output/faces.h"
 #include "src/output/image.h"
 #include "src/scene/scene_file.h"
 
 namespace exitance {
+
+struct FrameList {
+  nlohmann::ordered_json frames = nlohmann::ordered_json::array();  ///< as frames.json
+  std::string summary;                                              ///< a line a frame
+};
 
 struct Frame {
   std::size_t number = 0;

@@ -9,7 +9,6 @@
 #include <map>
 
 #include "src/cli/console.h"
-#include "src/cli/frame_files.h"
 #include "src/links/hierarchical_solution.h"
 #include "src/output/image.h"
 #include "src/output/mesh_faces.h"
@@ -186,7 +185,7 @@ class Frames {
   std::string name_;
   std::vector<double> reference_before_;
   bool stopped_ = false;  ///< what built everything, or the search for a reference
-  LinkFrames result_{Json::array(), {}};
+  FrameList result_;
 };
 
 }  // namespace

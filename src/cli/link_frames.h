@@ -3,10 +3,10 @@
 
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
+#include "src/cli/frame_files.h"
 #include "src/links/linked_radiosity.h"
 #include "src/scene/scene_file.h"
 
@@ -14,11 +14,6 @@ namespace exitance {
 
 /// rebuild, direct, hvt, hvt-peu; none where there is none of that name.
 std::optional<LinkMethod> link_method_named(const std::string& name);
-
-struct LinkFrames {
-  nlohmann::ordered_json frames;  ///< a list, as frames.json
-  std::string summary;            ///< a line a frame
-};
 
 struct LinkFrameOptions {
   LinkOptions links;
@@ -31,7 +26,7 @@ struct LinkFrameOptions {
   std::uint32_t image_size = 800;  ///< of the pictures, in pixels
   std::function<bool()> stop;      ///< asked between frames and within them, by any thread
   std::function<bool()> abandon;   ///< likewise; the frame that is being made is dropped then, or only its error
-  std::function<void(const LinkFrames&)> finished;  ///< told after each frame what there is so far
+  std::function<void(const FrameList&)> finished;  ///< told after each frame what there is so far
 };
 
 enum class LinksEnd : std::uint8_t {

@@ -25,7 +25,6 @@
 #include "src/cli/verbs.h"
 #include "src/links/hierarchical_solution.h"
 #include "src/output/checkpoint.h"
-#include "src/output/manifest.h"
 #include "src/output/process_memory.h"
 #include "src/output/report.h"
 #include "src/output/result_folder.h"
@@ -38,9 +37,6 @@ namespace {
 
 /// A closed scene whose closure defect is above this is a failed check.
 constexpr double kLargestClosureDefect = 1e-9;
-
-/// In the folder of the results, while there is more to do.
-constexpr const char* kUnfinished = "unfinished.parts";
 
 /// Along the edge of a patch: what would make 2^32 points of a single one.
 constexpr std::uint64_t kMostElements = 65'535;
@@ -165,7 +161,7 @@ class Solve {
         "what has been shot so far, exit code 4.\n"
         "With -o what is finished is kept in the folder, in {}: the same command goes on after Ctrl-C or a crash,\n"
         "another one begins anew. Links and rows of areas by rays are not kept.",
-        kLargestClosureDefect, kUnfinished));
+        kLargestClosureDefect, ResultFolder::kUnfinished));
   }
 
   void run() {
@@ -283,17 +279,12 @@ class Solve {
     return solve_scene(scene, options_);
   }
 
-  std::string unfinished() const { return (std::filesystem::path(folder_) / kUnfinished).string(); }
+  std::string unfinished() const { return (std::filesystem::path(folder_) / ResultFolder::kUnfinished).string(); }
 
   std::string key_of(const Scene& scene) const {
-    std::string key =
-        build_key() + fmt::format("scene {}\nmesh {} {} {}\n", scene_hash(scene), options_.mesh.patch_size,
-                                  options_.mesh.elements_per_edge, options_.mesh.small_patch);
-    for (const auto& [name, value] : given_options(verb_)) {
-      if (std::ranges::find(kOfNoConsequence, name) == kOfNoConsequence.end())
-        key += fmt::format("{} {}\n", name, value);
-    }
-    return key;
+    return key_of_options(verb_, kOfNoConsequence) +
+           fmt::format("scene {}\nmesh {} {} {}\n", scene_hash(scene), options_.mesh.patch_size,
+                       options_.mesh.elements_per_edge, options_.mesh.small_patch);
   }
 
   void end(const Report& report, const SceneSolution& solution) const {

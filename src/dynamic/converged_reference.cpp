@@ -42,6 +42,13 @@ FormFactorMatrix matrix_of(const std::shared_ptr<const SceneVersion>& version) {
   return rows;
 }
 
+/// Of the session that finds references for a session with such options.
+SessionOptions options_of_references(SessionOptions options, double tolerance) {
+  options.method = UpdateMethod::redistribute;
+  options.tolerance = tolerance;
+  return options;
+}
+
 }  // namespace
 
 std::vector<double> converged_reference(const DynamicRadiosity& state) {
@@ -63,10 +70,22 @@ FrameReferences::FrameReferences(const Scene& scene, const SessionOptions& optio
   const double entries =
       static_cast<double>(state.version().elements()) * static_cast<double>(state.version().patches()) * kDensity;
   if (entries * kBytesAnEntry < static_cast<double>(memory)) return;
-  SessionOptions own = options;
-  own.method = UpdateMethod::redistribute;
-  own.tolerance = tolerance;
-  session_.emplace(scene, own);
+  session_.emplace(scene, options_of_references(options, tolerance));
+}
+
+void FrameReferences::write(ArchiveWriter& file, const std::string& prefix) const {
+  if (session_) session_->write(file, prefix);
+}
+
+FrameReferences FrameReferences::taken_up(const Scene& scene, const SessionOptions& options,
+                                          std::span<const Edit> edits, const ArchiveReader& file,
+                                          const std::string& prefix, double tolerance) {
+  FrameReferences references;
+  if (file.holds(prefix + "is_shown")) {
+    references.session_.emplace(
+        EditSession::taken_up(scene, options_of_references(options, tolerance), edits, file, prefix));
+  }
+  return references;
 }
 
 void FrameReferences::apply(const Edit& edit) {

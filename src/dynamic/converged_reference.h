@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "src/dynamic/dynamic_radiosity.h"
@@ -34,7 +36,14 @@ class FrameReferences {
   /// shot, came first.
   std::optional<std::vector<double>> find(const DynamicRadiosity& state, const std::function<bool()>& stop);
 
+  /// As EditSession's: gathering has nothing to keep.
+  void write(ArchiveWriter& file, const std::string& prefix) const;
+  static FrameReferences taken_up(const Scene& scene, const SessionOptions& options, std::span<const Edit> edits,
+                                  const ArchiveReader& file, const std::string& prefix, double tolerance = 1e-4);
+
  private:
+  FrameReferences() = default;
+
   std::optional<EditSession> session_;
 };
 

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "src/dynamic/form_factor_column.h"
 #include "src/dynamic/object_rows.h"
 #include "src/dynamic/version_difference.h"
+#include "src/output/archive.h"
 #include "src/scene/edit.h"
 #include "src/solve/compensated.h"
 #include "src/solve/radiosity_system.h"
@@ -150,6 +152,15 @@ class DynamicRadiosity {
   /// Areas, reflectances and emissions of what is there; black where nothing is.
   Discretisation discretisation() const;
 
+  /// Adds what has been shot and received to an archive, under names that begin with `prefix`; versions by their serial
+  /// numbers, no materials and no form factors.
+  void write(ArchiveWriter& file, const std::string& prefix) const;
+  /// Goes on from there; form factors are computed anew when they are asked for. REQUIRES: version and materials are
+  /// those of the state that was written; versions: all that it had, and others; of two with the same number the later
+  /// one. Throws DamagedFile.
+  void read(const ArchiveReader& file, const std::string& prefix,
+            std::span<const std::shared_ptr<const SceneVersion>> versions);
+
  private:
   struct Layer {
     std::shared_ptr<const SceneVersion> version;
@@ -175,6 +186,7 @@ class DynamicRadiosity {
   void set_materials(const Scene& scene, std::uint32_t object);
   double received(std::uint32_t element, std::uint32_t band) const;
   void drop_gathered();
+  void find_rows(Gathering& gathering) const;
   void refresh(std::uint32_t patch);
   void receive(std::uint32_t element, double F, const double* amount);
   void refresh_patches_of(const std::vector<std::uint32_t>& elements);

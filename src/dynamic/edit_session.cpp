@@ -56,6 +56,7 @@ void EditSession::change_geometry(DynamicRadiosity& of, std::uint32_t object, co
   if (!options_.log) of.forget_changes();
   of.change_geometry(std::make_shared<SceneVersion>(of.version(), scene_, options_.mesh, object), scene_.scene(),
                      object, name);
+  if (versions_) versions_->push_back(of.shared_version());
 }
 
 /// The object that is taken out of the solution as it is selected. From scratch there is nothing to hold.
@@ -147,10 +148,11 @@ bool EditSession::step(DynamicRadiosity& of, SessionWork& work) {
   return true;
 }
 
-SessionWork EditSession::work(const Budget& budget) {
+SessionWork EditSession::work(const Budget& budget, SessionWork so_far) {
   const auto start = Clock::now();
-  SessionWork work;
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const double before = so_far.seconds;
+  SessionWork work = std::move(so_far);
+  const auto seconds = [&] { return before + std::chrono::duration<double>(Clock::now() - start).count(); };
   const std::optional<std::uint32_t> temporary = held();
   for (;;) {
     if (budget.shots && work.shots() >= *budget.shots) break;
@@ -160,6 +162,10 @@ SessionWork EditSession::work(const Budget& budget) {
       if (left < 0 || left < options_.threshold * base_.power_of_sources()) open_temporary(*temporary);
     }
     if (!step(state(), work)) break;
+    if (budget.after_shot) {
+      work.seconds = seconds();
+      budget.after_shot(work);
+    }
     if (budget.interrupted && budget.interrupted()) {
       work.interrupted = true;
       break;
@@ -170,6 +176,27 @@ SessionWork EditSession::work(const Budget& budget) {
   work.finished = solution().pending_changes() == 0 && !propagates(solution(), propagation_left());
   work.seconds = seconds();
   return work;
+}
+
+void EditSession::write(ArchiveWriter& file, const std::string& prefix) const {
+  const std::uint8_t is_shown = shown_.has_value();
+  file.write(prefix + "is_shown", std::span(&is_shown, 1));
+  base_.write(file, prefix + "base_");
+  if (shown_) shown_->write(file, prefix + "shown_");
+}
+
+EditSession EditSession::taken_up(Scene scene, const SessionOptions& options, std::span<const Edit> edits,
+                                  const ArchiveReader& file, const std::string& prefix) {
+  EditSession session(std::move(scene), options);
+  session.versions_.emplace({session.base_.shared_version()});
+  for (const Edit& edit : edits) session.apply(edit);
+  const std::vector<std::uint8_t> is_shown = file.uint8s(prefix + "is_shown");
+  if (is_shown.size() != 1 || (is_shown[0] != 0 && !session.held())) file.refuse("no object is selected");
+  if (is_shown[0] != 0) session.open_temporary(*session.held());
+  session.base_.read(file, prefix + "base_", *session.versions_);
+  if (session.shown_) session.shown_->read(file, prefix + "shown_", *session.versions_);
+  session.versions_.reset();
+  return session;
 }
 
 std::vector<PendingChange> EditSession::log() {

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,14 +52,6 @@ struct SessionOptions {
   std::uint64_t column_memory = DynamicRadiosity::kColumnMemory;  ///< for form factors that are kept [bytes]
 };
 
-/// How long to work. 0 is a budget, too: nothing is shot, and all that is to be redistributed stays in the log.
-struct Budget {
-  std::optional<std::uint64_t> shots;
-  std::optional<double> seconds;
-  /// Asked after every shot: true when there is new input. May be empty.
-  std::function<bool()> interrupted;
-};
-
 /// What a stretch of work has done. The same shots, asked for as a budget, give the same bits again.
 struct SessionWork {
   std::uint64_t propagations = 0, redistributions = 0;
@@ -69,6 +63,16 @@ struct SessionWork {
   bool interrupted = false;  ///< by new input
 
   std::uint64_t shots() const { return propagations + redistributions + gatherings; }
+};
+
+/// How long to work. 0 is a budget, too: nothing is shot, and all that is to be redistributed stays in the log.
+struct Budget {
+  std::optional<std::uint64_t> shots;
+  std::optional<double> seconds;
+  /// Asked after every shot: true when there is new input. May be empty.
+  std::function<bool()> interrupted;
+  /// Told after every shot what has been done in this stretch: the time to keep it (EditSession::write). May be empty.
+  std::function<void(const SessionWork&)> after_shot;
 };
 
 class EditSession {
@@ -92,8 +96,18 @@ class EditSession {
 
   /// Works until the budget is used up, input comes or nothing is left. Emitters of the object that was edited last
   /// propagate first. While an object is selected, what its removal left to do below the threshold comes before its
-  /// temporary place.
-  SessionWork work(const Budget& budget);
+  /// temporary place. so_far: of the same stretch, before the session was taken up; it counts.
+  SessionWork work(const Budget& budget, SessionWork so_far = {});
+
+  /// Adds all that was shot to an archive, under names that begin with `prefix`.
+  void write(ArchiveWriter& file, const std::string& prefix) const;
+  /// A session as it was written. scene, options: those that it began with; edits: all that it was told, in order. No
+  /// shot is repeated; form factors are computed anew when they are asked for, those of patches that have gathered at
+  /// once. It goes on to the same bits; with ObjectTerms::gathered but for the last ones, as columns that had been
+  /// brought up to date by what was gathered are now made otherwise. Throws DamagedFile, and InvalidEdit where the
+  /// edits were others.
+  static EditSession taken_up(Scene scene, const SessionOptions& options, std::span<const Edit> edits,
+                              const ArchiveReader& file, const std::string& prefix);
 
   /// The separate buffer of a selected object: by element and band, what it adds to the solution without it. Empty when
   /// none is shown.
@@ -120,6 +134,8 @@ class EditSession {
   DynamicRadiosity base_;                  ///< without the selected object, if there is one
   std::optional<DynamicRadiosity> shown_;  ///< with it
   std::optional<std::uint32_t> edited_;    ///< the object whose emitters come first
+  /// While a session is taken up: all versions that its edits have made. What it shot is of some of them.
+  std::optional<std::vector<std::shared_ptr<const SceneVersion>>> versions_;
 };
 
 }  // namespace exitance

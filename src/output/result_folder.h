@@ -20,6 +20,9 @@ class ResultFolder {
 
   const std::filesystem::path& draft() const { return draft_; }
 
+  /// In the folder, while there is more to do: what a run keeps to go on with (checkpoint.h).
+  static constexpr const char* kUnfinished = "unfinished.parts";
+
   /// Moves every file that is in the draft now into the folder, in place of earlier ones and of links. Throws
   /// InputError when a folder stands where a file is to go, before anything is moved, and when the system refuses.
   void publish() const;

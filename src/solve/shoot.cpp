@@ -14,38 +14,13 @@
 
 #include "src/output/archive.h"
 #include "src/output/save_pace.h"
-#include "src/solve/compensated.h"
 #include "src/solve/error_bound.h"
+#include "src/solve/sums_archive.h"
 
 namespace exitance {
 namespace {
 
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
-
-void write_sums(ArchiveWriter& file, const std::string& name, std::span<const CompensatedSum> sums) {
-  std::vector<double> high, low;
-  for (const CompensatedSum& sum : sums) {
-    high.push_back(sum.high());
-    low.push_back(sum.low());
-  }
-  file.write(name, std::span<const double>(high));
-  file.write(name + "_low", std::span<const double>(low));
-}
-
-/// In place of as many.
-template <class Value>
-void take(const ArchiveReader& file, std::vector<Value> found, std::vector<Value>& values) {
-  if (found.size() != values.size()) file.refuse("it is of another mesh");
-  values = std::move(found);
-}
-
-std::vector<CompensatedSum> sums_in(const ArchiveReader& file, const std::string& name) {
-  const std::vector<double> high = file.doubles(name), low = file.doubles(name + "_low");
-  if (high.size() != low.size()) file.refuse("its vectors do not fit each other");
-  std::vector<CompensatedSum> sums;
-  for (std::size_t k = 0; k < high.size(); ++k) sums.emplace_back(high[k], low[k]);
-  return sums;
-}
 
 // What has been shot and received so far.
 class Shooting {

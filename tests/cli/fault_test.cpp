@@ -122,7 +122,8 @@ std::vector<Work> long_work() {
           {"formfactor", "formfactor " + cube + " --patch-size 0.25 --save-every 0 -o @/a.h5"},
           {"reference", "reference " + data("box_on_floor.toml") + " --error 3e-2 --save-every 0 -o @/r.h5"},
           {"compare", "compare " + cube + " --patch-size 0.25 --save-every 0 --against rays:16 -o @/worst.vtp"},
-          {"redistribute", frames + " --method redistribute --patch-size 1.6 --elements 1 --references @/kept.h5"},
+          {"redistribute",
+           frames + " --object-terms shot --patch-size 1.6 --elements 1 --save-every 0.05 --references @/kept.h5"},
           {"hvt", frames + " --method hvt --patch-size 1.6 --eps 0.5 --min-area 1 --no-reference"},
           {"stress",
            "stress --family gap,duplicate --contender plain-double --count 1536 --against properties --save-every 0 "
@@ -240,6 +241,21 @@ nlohmann::json solution_in(const std::filesystem::path& folder) {
   return report;
 }
 
+/// The name of the part that was kept last.
+std::string last_part(const std::filesystem::path& kept) {
+  std::string last;
+  std::error_code failed;
+  for (std::filesystem::directory_iterator part(kept, failed), end; !failed && part != end; part.increment(failed)) {
+    if (part->path().extension() == ".h5") last = std::max(last, part->path().filename().string());
+  }
+  return last;
+}
+
+void end_when_more_is_kept(const std::filesystem::path& kept, const std::string& command, int signal, int code) {
+  const std::string first = last_part(kept);
+  EXPECT_EQ(Running(command).end_when([&] { return last_part(kept) > first; }, signal), code);
+}
+
 /// How a scene is solved.
 class KilledSolve : public testing::TestWithParam<const char*> {
  protected:
@@ -247,32 +263,18 @@ class KilledSolve : public testing::TestWithParam<const char*> {
     return "solve " + data("box_on_floor.toml") + " --save-every 0 " + GetParam() + more + " -o " +
            (scratch_ / folder).string();
   }
-  /// The name of the part that was kept last.
-  std::string last_part() const {
-    std::string last;
-    std::error_code failed;
-    for (std::filesystem::directory_iterator part(kept_, failed), end; !failed && part != end; part.increment(failed)) {
-      if (part->path().extension() == ".h5") last = std::max(last, part->path().filename().string());
-    }
-    return last;
-  }
-  void end_when_more_is_kept(const std::string& command, int signal, int code) const {
-    const std::string first = last_part();
-    EXPECT_EQ(Running(command).end_when([&] { return last_part() > first; }, signal), code);
-  }
-
   const ScratchFolder scratch_;
   const std::filesystem::path kept_ = scratch_ / "killed/unfinished.parts";
 };
 
 TEST_P(KilledSolve, GoesOnWithTheSameBits) {
   ASSERT_EQ(run(command("whole")).code, 0);
-  end_when_more_is_kept(command("killed", " --seed 2"), SIGKILL, -1);  // other work: it is forgotten
-  end_when_more_is_kept(command("killed"), SIGKILL, -1);
-  end_when_more_is_kept(command("killed"), SIGKILL, -1);
-  const std::string before = last_part();
-  end_when_more_is_kept(command("killed"), SIGINT, 4);
-  EXPECT_GT(last_part(), before);
+  end_when_more_is_kept(kept_, command("killed", " --seed 2"), SIGKILL, -1);  // other work: it is forgotten
+  end_when_more_is_kept(kept_, command("killed"), SIGKILL, -1);
+  end_when_more_is_kept(kept_, command("killed"), SIGKILL, -1);
+  const std::string before = last_part(kept_);
+  end_when_more_is_kept(kept_, command("killed"), SIGINT, 4);
+  EXPECT_GT(last_part(kept_), before);
   ASSERT_EQ(run(command("killed")).code, 0);
   EXPECT_FALSE(exists(kept_));
   EXPECT_EQ(solution_in(scratch_ / "killed"), solution_in(scratch_ / "whole"));
@@ -283,6 +285,68 @@ TEST_P(KilledSolve, GoesOnWithTheSameBits) {
 INSTANTIATE_TEST_SUITE_P(Methods, KilledSolve,
                          testing::Values("--patch-size 0.5 --elements 3", "--patch-size 1.5 --receivers area",
                                          "--patch-size 1 --method shoot --time-limit 1000 --tolerance 1e-3"));
+
+/// How a scene's events are followed by shots.
+class KilledFrames : public testing::TestWithParam<const char*> {
+ protected:
+  std::string command(const char* folder) const {
+    return "dynamic " + data("cube.toml") + " --patch-size 1.2 --elements 2 --no-images --save-every 0.01 " +
+           GetParam() + " -o " + (scratch_ / folder).string();
+  }
+  /// What they tell, but for times, and how many form factors it took: what is gone with a process is computed anew.
+  nlohmann::json frames_in(const char* folder) const {
+    nlohmann::json frames = json_in(scratch_ / folder / "frames.json");
+    for (nlohmann::json& frame : frames) {
+      for (const char* name : {"seconds", "seconds_edits", "visibility_tests", "redistribution_tests",
+                               "redistribution_tests_idle", "redistribution_tests_idle_patches"})
+        frame.erase(name);
+    }
+    return frames;
+  }
+
+  const ScratchFolder scratch_;
+  const std::filesystem::path kept_ = scratch_ / "killed/unfinished.parts";
+};
+
+TEST_P(KilledFrames, GoOnToTheSameBits) {
+  ASSERT_EQ(run(command("whole")).code, 0);
+  end_when_more_is_kept(kept_, command("killed") + " --tolerance 1e-3", SIGKILL, -1);
+  const Outcome other = run(command("killed") + " --time-limit 1e-3");
+  EXPECT_EQ(other.code, 4);
+  EXPECT_NE(other.err.find("warning: what was kept in " + kept_.string()), std::string::npos) << other.err;
+  for (int k = 0; k < 3; ++k) end_when_more_is_kept(kept_, command("killed"), SIGKILL, -1);
+  end_when_more_is_kept(kept_, command("killed"), SIGINT, 4);
+  EXPECT_NO_THROW(json_in(scratch_ / "killed/frames.json"));
+  const Outcome last = run(command("killed"));
+  EXPECT_EQ(last.code, 0) << last.err;
+  EXPECT_FALSE(exists(kept_));
+  EXPECT_EQ(frames_in("killed"), frames_in("whole"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, KilledFrames,
+                         testing::Values("--object-terms shot", "--object-terms shot --budget-shots 7 --work-off",
+                                         "--object-terms shot --memory-limit 0.0005", "--method restart --strategy 2",
+                                         "--method scratch"));
+
+TEST(KilledGathering, GoesOnToTheSameErrors) {
+  const ScratchFolder scratch;
+  const auto command = [&](const char* folder) {
+    return "dynamic " + data("cube.toml") + " --patch-size 1.2 --elements 2 --no-images --save-every 0.01 -o " +
+           (scratch / folder).string();
+  };
+  const std::filesystem::path frames = scratch / "killed/frames.json";
+  ASSERT_EQ(run(command("whole")).code, 0);
+  const auto has_added_the_cube = [&] { return exists(frames) && json_in(frames).size() == 2; };
+  EXPECT_EQ(Running(command("killed")).end_when(has_added_the_cube, SIGKILL), -1);
+  ASSERT_EQ(run(command("killed")).code, 0);
+  const nlohmann::json whole = json_in(scratch / "whole/frames.json"), killed = json_in(scratch / "killed/frames.json");
+  ASSERT_EQ(killed.size(), whole.size());
+  for (std::size_t k = 0; k < killed.size(); ++k) {
+    EXPECT_TRUE(killed[k].at("finished"));
+    EXPECT_EQ(killed[k].at("edits"), whole[k].at("edits"));
+    EXPECT_NEAR(killed[k].at("error"), whole[k].at("error"), 1e-9) << k;
+  }
+}
 
 /// Of what is kept where: whatever is solved next in that folder.
 class OtherSolve : public testing::TestWithParam<const char*> {};

@@ -7,13 +7,16 @@
 #include "src/dynamic/converged_reference.h"
 #include "src/scene/trespass.h"
 #include "tests/dynamic/rooms.h"
+#include "tests/output/scratch_folder.h"
 
 namespace exitance {
 namespace {
 
+using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Pointwise;
 
 SessionOptions options_with(UpdateMethod method, Strategy strategy, ImportanceOptions::Kind importance) {
   SessionOptions options;
@@ -374,21 +377,24 @@ class RandomSession {
     const EditedScene& scene = session.scene();
     const auto selected = scene.selected();
     const std::uint32_t object = 1 + random_.pick(4);
+    Edit edit;
     if (selected && random_.pick(4) == 0) {
-      session.apply({Operation::deselect, *selected, {}, {}, {}});
+      edit = {Operation::deselect, *selected, {}, {}, {}};
     } else if (random_.pick(6) == 0 && scene.is_present(object)) {
-      session.apply({Operation::select, object, {}, {}, {}});
+      edit = {Operation::select, object, {}, {}, {}};
     } else {
-      Edit edit = random_.next(scene);
+      edit = random_.next(scene);
       while (selected && edit.object != *selected) edit = random_.next(scene);
-      session.apply(edit);
     }
+    edits.push_back(edit);
+    session.apply(edit);
     Budget budget;
     budget.shots = random_.pick(12) * random_.pick(3);
     session.work(budget);
   }
 
   EditSession session;
+  std::vector<Edit> edits;  ///< so far
 
  private:
   RandomEdits random_;
@@ -407,6 +413,92 @@ TEST(EditSession, AHundredRandomEditsOfAnySessionEqualSolvingFromScratch) {
     }
     EXPECT_GT(most_pending, 5u) << "several changes were open at a time";
   }
+}
+
+/// The session as it is written in the middle of a stretch of work, taken up and gone on with.
+class TakenUp : public testing::TestWithParam<SessionOptions> {};
+
+TEST_P(TakenUp, GoesOnAsIfNothingHadHappened) {
+  const ScratchFolder folder;
+  RandomSession random(29, GetParam());
+  std::size_t most_pending = 0, held = 0;
+  for (int k = 0; k < 40; ++k) {
+    random.edit();
+    if (k % 4 != 3) continue;
+    most_pending = std::max(most_pending, random.session.log().size());
+    held += random.session.scene().selected().has_value();
+    EditSession whole = random.session;
+    Budget budget;
+    budget.shots = 5;
+    SessionWork first;
+    budget.after_shot = [&](const SessionWork& work) {
+      first = work;
+      if (work.shots() != 2) return;
+      ArchiveWriter file(folder / "session.h5", "session");
+      whole.write(file, "of_");
+      file.publish();
+    };
+    if (whole.work(budget).shots() < 2) continue;
+    const ArchiveReader file(folder / "session.h5", "session");
+    EditSession again = EditSession::taken_up(test_room(), GetParam(), random.edits, file, "of_");
+    SessionWork so_far;
+    so_far.propagations = 2;
+    Budget rest;
+    rest.shots = first.shots();
+    const SessionWork work = again.work(rest, so_far);
+    EXPECT_EQ(work.shots(), first.shots());
+    EXPECT_EQ(again.solution().element_B(), whole.solution().element_B()) << k;
+    EXPECT_EQ(again.solution().unshot(), whole.solution().unshot()) << k;
+    EXPECT_EQ(again.solution().has_forgotten(), whole.solution().has_forgotten());
+    ASSERT_EQ(again.log().size(), whole.log().size()) << k;
+    for (std::size_t c = 0; c < again.log().size(); ++c) {
+      EXPECT_EQ(again.log()[c].name, whole.log()[c].name);
+      EXPECT_EQ(again.log()[c].largest_energy, whole.log()[c].largest_energy);
+    }
+    EXPECT_EQ(again.temporary_change(), whole.temporary_change());
+    again.work({});
+    whole.work({});
+    const std::vector<double> B = again.solution().element_B(), of_whole = whole.solution().element_B();
+    if (GetParam().object_terms == ObjectTerms::shot) {
+      EXPECT_EQ(B, of_whole) << k << ", worked off";
+    } else {  // columns that were brought up to date by rows have other last bits than those that are made anew
+      EXPECT_THAT(B, Pointwise(DoubleNear(1e-11), of_whole)) << k << ", worked off";
+    }
+  }
+  if (GetParam().method != UpdateMethod::scratch && GetParam().log) {
+    EXPECT_GT(most_pending, 2u);
+  }
+  EXPECT_GT(held, 0u);
+}
+
+SessionOptions without_log() {
+  SessionOptions options = shooting();
+  options.log = false;
+  return options;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Sessions, TakenUp,
+    testing::Values(plain(), gathering(), shooting(), without_log(),
+                    options_with(UpdateMethod::restart, Strategy::interleave, ImportanceOptions::Kind::total),
+                    options_with(UpdateMethod::scratch, Strategy::interleave, ImportanceOptions::Kind::total)));
+
+TEST(EditSession, OfOtherEditsIsNotTakenUp) {
+  const ScratchFolder folder;
+  EditSession session(test_room(), plain());
+  const std::vector<Edit> edits = {moved(1, {0.2, 0.1, 0}), moved(2, {-0.1, 0, 0})};
+  for (const Edit& edit : edits) session.apply(edit);
+  {
+    ArchiveWriter file(folder / "session.h5", "session");
+    session.write(file, "");
+    file.publish();
+  }
+  const ArchiveReader file(folder / "session.h5", "session");
+  EXPECT_THROW(EditSession::taken_up(test_room(), plain(), std::span(edits).first(1), file, ""), DamagedFile);
+  SessionOptions finer = plain();
+  finer.mesh.patch_size = 1;
+  EXPECT_THROW(EditSession::taken_up(test_room(), finer, edits, file, ""), DamagedFile);
+  EXPECT_NO_THROW(EditSession::taken_up(test_room(), plain(), edits, file, ""));
 }
 
 TEST(EditSession, AnyNumberOfThreadsGivesTheSameBits) {
