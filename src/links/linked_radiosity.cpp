@@ -421,8 +421,8 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
 }
 
 std::vector<double> LinkedRadiosity::left_as_it_was() const {
+  if (!any_stale_ && !pending_) return {};
   std::vector<double> left(tree_.nodes().size());
-  if (!any_stale_ && !pending_) return left;
   LinkIndex marked;
   if (pending_) mark_pending(marked = links_);
   const LinkIndex& all = pending_ ? marked : links_;

@@ -102,8 +102,8 @@ class LinkedRadiosity {
   LinkUpdate work_off(const LinkInterruption& interruption = {});
 
   /// What links bring together that updates have left as they were (Link::stale and below), by node, luminance of ρ H
-  /// [W/m²]: about by how much B may be off at most, before that is reflected on. All 0 after HVT that was not
-  /// interrupted.
+  /// [W/m²]: about by how much B may be off at most, before that is reflected on. Empty where nothing was left, as by
+  /// HVT that was not interrupted.
   std::vector<double> left_as_it_was() const;
 
   /// B by node and band of the same links, with every value as the scene has it, converged to 1e-12 of max B. Throws
