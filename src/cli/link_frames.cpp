@@ -154,8 +154,9 @@ class Frames {
 
   /// Of what updates have left as it was, as if all of it were missing.
   ConvergenceError left_undone(std::span<const std::uint32_t> elements) const {
-    const std::span<const double> Y = links_.radiosity().luminance();
     std::vector<double> most = links_.left_as_it_was();
+    if (most.empty()) return {};
+    const std::span<const double> Y = links_.radiosity().luminance();
     std::ranges::transform(most, Y, most.begin(), std::plus());
     return link_error(links_.tree(), elements, 1, most, Y, Y);
   }

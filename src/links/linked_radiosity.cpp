@@ -264,12 +264,16 @@ void LinkedRadiosity::follow(Pending pending, const LinkInterruption& interrupti
   if (pending.stage == Stage::materials && look_at_pairs(pending, LinkScope::materials, interruption, update))
     pending.stage = Stage::new_light;
   update.seconds_links += watch.lap();
+  bool done = pending.stage == Stage::new_light;
   if (shoots) {
     shoot(update, interruption.abandon);
   } else {
+    if (done && pending.radiosity) {  // as if it had been one update
+      radiosity_ = *pending.radiosity;
+      radiosity_.clear_what_is_gone();
+    }
     gather(update, interruption.abandon);
   }
-  bool done = pending.stage == Stage::new_light;
   // What has come, or was covered, had no light before the exchange. By that which it has now links may be worth
   // looking at that were not before.
   while (done && shoots) {
@@ -277,7 +281,7 @@ void LinkedRadiosity::follow(Pending pending, const LinkInterruption& interrupti
     if (pending.pairs.empty()) {
       brighter = judge_what_is_brighter();
       if (brighter.empty() || !any_stale_) break;
-      pending.luminance.clear();
+      pending.radiosity.reset();
     }
     watch.lap();
     done = look_at_pairs(pending, LinkScope::significant, interruption, update, &brighter);
@@ -307,7 +311,7 @@ bool LinkedRadiosity::look_at_pairs(Pending& pending, LinkScope scope, const Lin
   how.order = interruption.order;
   how.sources = sources;
   const bool begins = pending.pairs.empty();
-  if (!pending.luminance.empty()) how.luminance = pending.luminance;
+  if (pending.radiosity) how.luminance = pending.radiosity->luminance();
   if (!begins) how.any_stale = pending.any_stale;
   const LinkWork work = update_links(how, links_, pending.method == LinkMethod::hvt_peu ? &radiosity_ : nullptr,
                                      begins && !interruption.stop ? nullptr : &pending.pairs);
@@ -319,7 +323,7 @@ bool LinkedRadiosity::look_at_pairs(Pending& pending, LinkScope scope, const Lin
   if (done) {
     pending.skipped = false;
   } else {
-    if (pending.luminance.empty()) pending.luminance.assign(how.luminance.begin(), how.luminance.end());
+    if (!pending.radiosity) pending.radiosity = std::make_shared<const NodeRadiosity>(radiosity_);
     pending.any_stale = how.any_stale;
   }
   return done;
@@ -417,8 +421,8 @@ void LinkedRadiosity::change(std::span<const Edit> edits, LinkMethod method, con
 }
 
 std::vector<double> LinkedRadiosity::left_as_it_was() const {
+  if (!any_stale_ && !pending_) return {};
   std::vector<double> left(tree_.nodes().size());
-  if (!any_stale_ && !pending_) return left;
   LinkIndex marked;
   if (pending_) mark_pending(marked = links_);
   const LinkIndex& all = pending_ ? marked : links_;

@@ -96,12 +96,14 @@ class LinkedRadiosity {
   /// REQUIRES: built.
   LinkUpdate update(std::span<const Edit> edits, LinkMethod method, const LinkInterruption& interruption = {});
 
-  /// Goes on with what the last update left, the same way. REQUIRES: built.
+  /// Goes on with what the last update left, the same way. Once nothing is left, direct and hvt leave the bits that an
+  /// update leaves which was not interrupted, B included; hvt_peu leaves links whose values are the same, and a B that
+  /// differs by what its shots may leave unshot. REQUIRES: built.
   LinkUpdate work_off(const LinkInterruption& interruption = {});
 
   /// What links bring together that updates have left as they were (Link::stale and below), by node, luminance of ρ H
-  /// [W/m²]: about by how much B may be off at most, before that is reflected on. All 0 after HVT that was not
-  /// interrupted.
+  /// [W/m²]: about by how much B may be off at most, before that is reflected on. Empty where nothing was left, as by
+  /// HVT that was not interrupted.
   std::vector<double> left_as_it_was() const;
 
   /// B by node and band of the same links, with every value as the scene has it, converged to 1e-12 of max B. Throws
@@ -129,7 +131,8 @@ class LinkedRadiosity {
     std::vector<PendingPair> pairs;  ///< of this stage; empty where they have not been sought yet
     std::shared_ptr<const Obstacles> before;
     std::vector<std::uint8_t> moved, relit;  ///< by object
-    std::vector<double> luminance;           ///< by which links are refined
+    /// As it stood when the first pairs were left: by it links are refined, and gathering begins from it in the end.
+    std::shared_ptr<const NodeRadiosity> radiosity;
     bool any_stale = false;                  ///< before this stage
     bool skipped = false;                    ///< whether this stage has left something stale
   };

@@ -124,7 +124,7 @@ PairUpdate::Need PairUpdate::need(const PatchPair& pair, std::span<const Link> l
   if (!stale && !receives_anew(links.front()) && !shadows_->may_change(pair.receiver, pair.source))
     return Need::nothing;
   // What receives anew is raised where it is left, by update().
-  const bool skips = only_significant() && links.front().energy < task_.B_eps && !receives_anew(links.front());
+  const bool skips = only_significant() && !receives_anew(links.front()) && is_insignificant(links.front());
   return skips ? Need::skip : Need::work;
 }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "tests/cli/program.h"
@@ -51,6 +53,12 @@ TEST(Links, FollowTheEventsThatRedistributionFollows) {
     for (std::size_t k = 0; k < 4; ++k) {
       EXPECT_EQ(frames[k]["frame"], k);
       EXPECT_GT(frames[k]["seconds"], 0.0);
+      EXPECT_GT(frames[k]["cpu_seconds"], 0.0);
+      for (const char* of : {"form_factors", "visibility", "shafts"}) {
+        EXPECT_GT(frames[k]["thread_seconds"][of], 0.0) << of;
+        EXPECT_TRUE(std::isfinite(frames[k]["thread_seconds"][of].get<double>())) << of;
+      }
+      EXPECT_TRUE(std::isfinite(frames[k]["cpu_seconds"].get<double>()));
       EXPECT_GT(frames[k]["links_updated"], 0);
       EXPECT_GT(frames[k]["visibility_tests"], 0);
       EXPECT_LT(frames[k]["error"], method == std::string("hvt-peu") ? 1e-2 : 1e-5);
@@ -91,6 +99,44 @@ TEST(Links, OfGroupsLeavePatchesAsTheyAreGiven) {
   EXPECT_EQ(patches("--clusters off"), 6);
   EXPECT_EQ(patches("--clusters on --patch-size 0"), 6);
   EXPECT_GT(patches("--clusters on --min-area 0.01"), 6);
+}
+
+// What is left as it was bounds how far off B is, but for reflection (rho is 0.8 at most), and is nothing without
+// thresholds and interruptions.
+TEST(Links, TellWhatTheyLeaveUndone) {
+  const ScratchFolder scratch;
+  const auto frames_of = [&](const std::string& how) {
+    const Outcome outcome = run("dynamic " + data("cube.toml") + kCoarse + how + " --no-images -o " +
+                                (scratch / "d").string());
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const bool told = outcome.out.find("left undone") != std::string::npos;
+    const auto frames = json_in(scratch / "d" / "frames.json");
+    EXPECT_EQ(told, std::ranges::any_of(frames, [](const auto& f) { return f["left_undone"] > 0.0; })) << how;
+    return frames;
+  };
+  for (const char* how : {"--method direct", "--method hvt", "--method hvt-peu --b-eps 0"}) {
+    for (const auto& frame : frames_of(how)) {
+      EXPECT_EQ(frame["left_undone"], 0.0) << how;
+      EXPECT_EQ(frame["left_undone_worst_1_percent"], 0.0) << how;
+    }
+  }
+  double before = 0;
+  for (const char* b_eps : {"0.002", "0.02"}) {
+    const auto frames = frames_of(std::string("--method hvt-peu --b-eps ") + b_eps);
+    EXPECT_EQ(frames[0]["left_undone"], 0.0);
+    for (std::size_t k = 1; k < 4; ++k) {
+      EXPECT_GT(frames[k]["skipped"], 0);
+      EXPECT_GT(frames[k]["left_undone"], 0.0);
+      EXPECT_LT(frames[k]["error"], 5 * frames[k]["left_undone"].get<double>());
+    }
+    EXPECT_GT(frames[3]["left_undone"], before);
+    before = frames[3]["left_undone"];
+  }
+  const auto frames = frames_of("--method hvt --budget-ms 0 --work-off");
+  EXPECT_GT(frames[1]["left_undone"], 0.0);
+  EXPECT_GT(frames[1]["left_undone_worst_1_percent"], 0.0);
+  EXPECT_LT(frames[1]["error"], 5 * frames[1]["left_undone"].get<double>());
+  EXPECT_EQ(frames[4]["left_undone"], 0.0);
 }
 
 TEST(Links, UpdatesAreInterruptedAndGoOn) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <stdexcept>
 
@@ -17,6 +18,16 @@
 
 namespace exitance {
 namespace {
+
+/// Unit squares opposite at a distance of 1, and what stands between.
+Question squares(std::vector<Obstacle> occluders) {
+  Question question;
+  question.normal = {0, 0, 1};
+  question.receiver = {rectangle(0, 0, 0, 1, 1), {}};
+  question.source = {reversed(rectangle(1, 0, 0, 1, 1)), {}};
+  question.occluders = std::move(occluders);
+  return question;
+}
 
 StressOptions asking(const std::string& kind, const std::string& contender, std::uint64_t count) {
   StressOptions options;
@@ -109,6 +120,32 @@ TEST(AreaQuestions, FalseClassesOfShaftsAreFound) {
   }
 }
 
+// Of shafts: of each its own class and, where its ends face each other, one of each thing.
+TEST(AreaQuestions, ClassesThatWereJudgedAreCounted) {
+  std::atomic<std::uint64_t> said = 0;
+  StressOptions options = asking("shafts", "exact", 29);
+  options.properties = false;
+  const auto exact = options.contenders[0].ask;
+  options.contenders[0].ask = [&](const Question& q, std::uint64_t seed) {
+    Opinion opinion = exact(q, seed);
+    said += opinion.classes.size();
+    return opinion;
+  };
+  const StressTally total = run_stress(options).total("exact");
+  EXPECT_EQ(total.classes, said);
+  EXPECT_GT(total.classes, 2 * total.questions);
+  options.oracle = false;
+  EXPECT_EQ(run_stress(options).total("exact").classes, 0u);
+
+  const Question free = squares({}), behind = [] {
+    Question q = squares({sheet(rectangle(2, 0, 0, 1, 1)), sheet(rectangle(0.5, 0, 0, 1, 1))});
+    std::ranges::reverse(q.source.outer);  // looks away
+    return q;
+  }();
+  EXPECT_EQ(ask_shafts(free).classes, (std::vector<std::uint8_t>{0, 0, 0})) << "open; neither end enters";
+  EXPECT_EQ(ask_shafts(behind).classes, (std::vector<std::uint8_t>{static_cast<std::uint8_t>(ShaftClass::away)}));
+}
+
 TEST(AreaQuestions, MissedAndFalseShadowsAreFound) {
   for (const Shade said : {Shade::outside, Shade::umbra}) {
     StressOptions options = asking("shadows", "exact", 6);
@@ -151,16 +188,6 @@ TEST(AreaQuestions, HaveTheScenesOfPointsAndAReceiver) {
 }
 
 // --- The oracle of pairs -------------------------------------------------------------------------------------------
-
-/// Unit squares opposite at a distance of 1, and what stands between.
-Question squares(std::vector<Obstacle> occluders) {
-  Question question;
-  question.normal = {0, 0, 1};
-  question.receiver = {rectangle(0, 0, 0, 1, 1), {}};
-  question.source = {reversed(rectangle(1, 0, 0, 1, 1)), {}};
-  question.occluders = std::move(occluders);
-  return question;
-}
 
 /// Everything turned, and rounded.
 Question turned(Question question) {
