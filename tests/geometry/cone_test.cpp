@@ -140,6 +140,73 @@ TYPED_TEST(ConeOf, ACornerAtThePointOfView) {
   EXPECT_EQ(asked, 1);
 }
 
+/// Of lattice points, many of which lie in the planes of sides, coincide, or lie in the point of view.
+TYPED_TEST(ConeOf, RowsAndColumnsTellTheSignOfEveryCorner) {
+  Random random("rows");
+  const auto cone_of = [&](std::vector<Vec3>& corners, Cone<TypeParam>& cone) {
+    std::vector<const Vec3*> loop;
+    for (Vec3& v : corners) {
+      for (const int axis : {0, 1, 2}) v[axis] = random.whole(-2, 2);
+      loop.push_back(&v);
+    }
+    set_cone<TypeParam>(cone, {}, loop, 1);
+  };
+  const ViewFrame frame{{}, {0, 0, 1}, {}};
+  StageCounts counts;
+  for (std::size_t n = 1; n <= 10; ++n) {
+    for (int k = 0; k < 20; ++k) {
+      std::vector<Vec3> seen(n), of_sides(11 - n);
+      Cone<TypeParam> cone, other;
+      cone_of(seen, cone);
+      cone_of(of_sides, other);
+      const auto value = [&](std::size_t side, std::size_t corner) {  // exactly
+        return dot(exitance::cross(of_sides[side], of_sides[(side + 1) % of_sides.size()]), seen[corner]);
+      };
+      const auto sign_of = [](double v) { return v > 0 ? 1 : v < 0 ? -1 : 0; };
+      cone.corners.set_kept(0, false);
+      for (std::size_t s = 0; s < of_sides.size(); ++s) {
+        Row<TypeParam> row;
+        row.fill(other.sides[s], cone.corners, frame, counts);
+        bool any_positive = false, any_negative = false, all_positive = true;
+        for (std::size_t c = 0; c < n; ++c) {
+          const double truth = value(s, c);
+          ASSERT_EQ(row.sign(c), sign_of(truth)) << n << ", side " << s << ", corner " << c;
+          ASSERT_EQ(row.at(c).sign, sign_of(truth));
+          ASSERT_LE(std::fabs(static_cast<double>(row.at(c).value) - truth), static_cast<double>(row.at(c).error));
+          ASSERT_EQ(value_at(other.sides[s], cone.corners, c, frame, counts).sign, sign_of(truth));
+          any_positive = any_positive || (c > 0 && truth > 0);
+          any_negative = any_negative || (c > 0 && truth < 0);
+          all_positive = all_positive && truth > 0;
+        }
+        ASSERT_EQ(row.any_positive(), any_positive) << n << ", side " << s;
+        ASSERT_EQ(row.any_negative(), any_negative) << n << ", side " << s;
+        ASSERT_EQ(row.all_positive(), all_positive) << n << ", side " << s;
+      }
+      SideBlocks<TypeParam> sides;
+      sides.set(other.sides);
+      Columns<TypeParam> columns;
+      for (const ConeSide<TypeParam>& edge : cone.sides) {
+        std::vector<std::array<int, 3>> expected, told;
+        bool outside = false;
+        for (std::size_t s = 0; s < of_sides.size(); ++s) {
+          const int from = sign_of(value(s, edge.from)), to = sign_of(value(s, edge.to));
+          outside = outside || (from < 0 && to < 0);
+          if (from + to <= 0) expected.push_back({static_cast<int>(s), from, to});
+        }
+        const bool meets = columns.each(
+            sides, cone.corners, edge, frame, counts, [&](const auto& side, const auto& from, const auto& to) {
+              told.push_back({static_cast<int>(&side - other.sides.data()), from.sign, to.sign});
+              return true;
+            });
+        ASSERT_EQ(meets, !outside) << n;
+        if (meets) {
+          ASSERT_EQ(told, expected) << n;
+        }
+      }
+    }
+  }
+}
+
 TYPED_TEST(ConeOf, AValueThatUnderflowsKeepsItsSign) {
   const Vec3 x, p{1e-200, 0, 0}, q{0, 1e-200, 0}, above{0, 0, 1e-200}, beside{1e-200, 1e-200, 0};
   const std::array<const Vec3*, 2> loop{&p, &q};
