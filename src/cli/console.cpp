@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <iostream>
+#include <utility>
 
 #include "src/scene/input_error.h"
 
@@ -33,10 +34,22 @@ std::size_t shown_character(std::string_view text) {
   return overlong || surrogate || code > 0x10ffff || code < 0xa0 ? 0 : length;  // below 0xa0: C1 controls
 }
 
+/// A line as it is or, where it is longer than kLongest bytes, with an ellipsis for its middle: names in it may be of
+/// any length, what stands at its start tells where something is wrong, and what stands at its end how to mend it.
+std::string shortened(std::string line) {
+  constexpr std::size_t kLongest = 1000, kAtEnd = 400;
+  if (line.size() <= kLongest) return line;
+  const auto continues = [&](std::size_t at) { return (static_cast<std::uint8_t>(line[at]) & 0xc0) == 0x80; };
+  std::size_t from = kLongest - kAtEnd, to = line.size() - kAtEnd;
+  while (continues(from)) --from;
+  while (continues(to)) ++to;
+  return line.replace(from, to - from, "…");
+}
+
 void print_line(std::string_view before, std::string_view text) {
   std::string line = printable(text);
   std::ranges::replace(line, '\n', ' ');
-  fmt::print(stderr, "{}{}\n", before, line);
+  fmt::print(stderr, "{}{}\n", before, shortened(std::move(line)));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ std::string printable(std::string_view text);
 /// disk), so that results cannot get lost unnoticed.
 void print_results(std::string_view text);
 
-/// One printable line on standard error, whatever is in the text.
+/// One printable line on standard error, whatever is in the text; of a long one its start and its end.
 void print_message(std::string_view text);  ///< "exitance: text"
 void print_warning(std::string_view text);  ///< "warning: text"
 

@@ -5,8 +5,6 @@
 #include <boost/property_tree/xml_parser.hpp>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -14,6 +12,7 @@
 
 #include "src/reference/solution_record.h"
 #include "src/scene/input_error.h"
+#include "src/scene/text_cursor.h"
 
 namespace exitance {
 namespace {
@@ -29,9 +28,7 @@ using Tree = boost::property_tree::ptree;
 constexpr std::ptrdiff_t kMostTags = 1000;
 
 Tree read_xml(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path.string(), 0, "cannot be read; name a folder that `exitance solve` has written");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = read_bytes(path);
   if (std::ranges::count(text, '<') > kMostTags) refuse(path, fmt::format("has more than {} tags", kMostTags));
   std::istringstream stream(text);
   Tree tree;
@@ -71,10 +68,9 @@ std::vector<Number> numbers(const fs::path& path, const Tree& array) {
 }
 
 std::string scene_hash_in(const fs::path& path, SolutionRecord& record) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(path.string(), 0, "cannot be read; name a folder that `exitance solve` has written");
+  const std::string text = read_bytes(path);
   try {
-    const nlohmann::json report = nlohmann::json::parse(stream);
+    const nlohmann::json report = nlohmann::json::parse(text);
     record.scene = report.at("scene");
     record.unit = report.at("unit");
     record.bands = report.at("bands");

@@ -100,6 +100,27 @@ TEST_F(BadInputTest, NamesThatAreTooLongOrNoFiles) {
   expect(3, "diff " + long_name + " " + long_name, "no such file");
 }
 
+/// Of a line with a long name in it, the start and the end are told, in whole characters.
+TEST_F(BadInputTest, NamesOfAnyLengthInOneShortLine) {
+  for (const std::string lead : {"", "x", "xx"}) {
+    std::string name = lead;
+    for (int k = 0; k < 30'000; ++k) name += "€";
+    const std::string scene = "[[material]]\nname = \"" + name + "\"\nrho = 1\n[[object]]\nmaterial = \"" + name +
+                              "\"\nbox = {min = [0, 0, 0], max = [1, 1, 1]}\n";
+    const Outcome outcome = run("solve " + write("name.toml", scene));
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_TRUE(outcome.one_line_on_stderr());
+    EXPECT_LT(outcome.err.size(), 1100u);
+    EXPECT_THAT(outcome.err, testing::HasSubstr("name.toml:1: material '" + lead + "€"));
+    EXPECT_THAT(outcome.err, testing::EndsWith("below 1; lower it\n"));
+    std::string rest = outcome.err;
+    for (const std::string character : {"€", "…"}) {
+      for (std::size_t at; (at = rest.find(character)) != std::string::npos;) rest.erase(at, character.size());
+    }
+    EXPECT_TRUE(std::ranges::all_of(rest, [](char c) { return (c & 0x80) == 0; })) << "no character is cut in two";
+  }
+}
+
 TEST_F(BadInputTest, Usage) {
   const std::string cube = data("furnace_cube.toml");
   expect(2, "", "verb");

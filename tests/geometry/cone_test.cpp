@@ -140,6 +140,73 @@ TYPED_TEST(ConeOf, ACornerAtThePointOfView) {
   EXPECT_EQ(asked, 1);
 }
 
+/// Of lattice points, many of which lie in the planes of sides, coincide, or lie in the point of view.
+TYPED_TEST(ConeOf, RowsAndColumnsTellTheSignOfEveryCorner) {
+  Random random("rows");
+  const auto cone_of = [&](std::vector<Vec3>& corners, Cone<TypeParam>& cone) {
+    std::vector<const Vec3*> loop;
+    for (Vec3& v : corners) {
+      for (const int axis : {0, 1, 2}) v[axis] = random.whole(-2, 2);
+      loop.push_back(&v);
+    }
+    set_cone<TypeParam>(cone, {}, loop, 1);
+  };
+  const ViewFrame frame{{}, {0, 0, 1}, {}};
+  StageCounts counts;
+  for (std::size_t n = 1; n <= 10; ++n) {
+    for (int k = 0; k < 20; ++k) {
+      std::vector<Vec3> seen(n), of_sides(11 - n);
+      Cone<TypeParam> cone, other;
+      cone_of(seen, cone);
+      cone_of(of_sides, other);
+      const auto value = [&](std::size_t side, std::size_t corner) {  // exactly
+        return dot(exitance::cross(of_sides[side], of_sides[(side + 1) % of_sides.size()]), seen[corner]);
+      };
+      const auto sign_of = [](double v) { return v > 0 ? 1 : v < 0 ? -1 : 0; };
+      cone.corners.set_kept(0, false);
+      for (std::size_t s = 0; s < of_sides.size(); ++s) {
+        Row<TypeParam> row;
+        row.fill(other.sides[s], cone.corners, frame, counts);
+        bool any_positive = false, any_negative = false, all_positive = true;
+        for (std::size_t c = 0; c < n; ++c) {
+          const double truth = value(s, c);
+          ASSERT_EQ(row.sign(c), sign_of(truth)) << n << ", side " << s << ", corner " << c;
+          ASSERT_EQ(row.at(c).sign, sign_of(truth));
+          ASSERT_LE(std::fabs(static_cast<double>(row.at(c).value) - truth), static_cast<double>(row.at(c).error));
+          ASSERT_EQ(value_at(other.sides[s], cone.corners, c, frame, counts).sign, sign_of(truth));
+          any_positive = any_positive || (c > 0 && truth > 0);
+          any_negative = any_negative || (c > 0 && truth < 0);
+          all_positive = all_positive && truth > 0;
+        }
+        ASSERT_EQ(row.any_positive(), any_positive) << n << ", side " << s;
+        ASSERT_EQ(row.any_negative(), any_negative) << n << ", side " << s;
+        ASSERT_EQ(row.all_positive(), all_positive) << n << ", side " << s;
+      }
+      SideBlocks<TypeParam> sides;
+      sides.set(other.sides);
+      Columns<TypeParam> columns;
+      for (const ConeSide<TypeParam>& edge : cone.sides) {
+        std::vector<std::array<int, 3>> expected, told;
+        bool outside = false;
+        for (std::size_t s = 0; s < of_sides.size(); ++s) {
+          const int from = sign_of(value(s, edge.from)), to = sign_of(value(s, edge.to));
+          outside = outside || (from < 0 && to < 0);
+          if (from + to <= 0) expected.push_back({static_cast<int>(s), from, to});
+        }
+        const bool meets = columns.each(
+            sides, cone.corners, edge, frame, counts, [&](const auto& side, const auto& from, const auto& to) {
+              told.push_back({static_cast<int>(&side - other.sides.data()), from.sign, to.sign});
+              return true;
+            });
+        ASSERT_EQ(meets, !outside) << n;
+        if (meets) {
+          ASSERT_EQ(told, expected) << n;
+        }
+      }
+    }
+  }
+}
+
 TYPED_TEST(ConeOf, AValueThatUnderflowsKeepsItsSign) {
   const Vec3 x, p{1e-200, 0, 0}, q{0, 1e-200, 0}, above{0, 0, 1e-200}, beside{1e-200, 1e-200, 0};
   const std::array<const Vec3*, 2> loop{&p, &q};
@@ -171,6 +238,114 @@ TYPED_TEST(ConeOf, APointThatDropsIsNoEndOfAnEdgeThatDoesNot) {
   EXPECT_FALSE(is_end(v, false));
   EXPECT_FALSE(is_end(p, true));
   EXPECT_FALSE(is_end_of({ViewPoint::Kind::at_horizon, false, 1, &p, &v}, cone.sides[0]));
+}
+
+/// The corners of a triangle and what the functional of a plane through x that cuts it says of them.
+struct Cut {
+  std::array<Vec3, 3> corners;
+  std::array<Q, 3> truth;
+};
+Cut cut_by_a_plane(Random& random, const Vec3& x) {
+  for (;;) {
+    Cut cut{{drawn(random, 1), drawn(random, 1), drawn(random, 1)}, {}};
+    const Point n = exact(drawn(random, 1));
+    int above = 0, clear = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Point w = exact(cut.corners[c]) - exact(x);
+      cut.truth[c] = n[0] * w[0] + n[1] * w[1] + n[2] * w[2];
+      above += cut.truth[c] > 0;
+      clear += CGAL::abs(cut.truth[c]) > Q(0.01);
+    }
+    if (clear == 3 && (above == 1 || above == 2)) return cut;
+  }
+}
+
+/// New corners err by no more than they say where the values that they are cut at do not.
+TYPED_TEST(ConeOf, CutsHasCornersWithinTheirBounds) {
+  Random random("cuts");
+  for (int k = 0; k < 300; ++k) {
+    constexpr double kError = 1e-5;
+    const Vec3 x = drawn(random, 1);
+    const Cut cut = cut_by_a_plane(random, x);
+    const std::array<const Vec3*, 3> loop{&cut.corners[0], &cut.corners[1], &cut.corners[2]};
+    Cone<TypeParam> cone;
+    set_cone<TypeParam>(cone, x, loop, 1);
+    std::vector<Signed<TypeParam>> weight;
+    for (const Q& truth : cut.truth) {
+      const double off = CGAL::to_double(truth) + random.real(-kError, kError);
+      weight.push_back({TypeParam(off), TypeParam(1.01 * kError), truth > 0 ? 1 : -1});
+    }
+    clip(cone, weight, ViewPoint::Kind::at_horizon, ConeSide<TypeParam>{});
+    ASSERT_EQ(cone.corners.size(), 5u);
+    for (std::size_t c = 3; c < 5; ++c) {
+      const ViewPoint& at = cone.corners.exact(c);
+      const auto a = static_cast<std::size_t>(at.a - cut.corners.data()),
+                 b = static_cast<std::size_t>(at.b - cut.corners.data());
+      const Point from = exact(*at.a) - exact(x), to = exact(*at.b) - exact(x);
+      const Q t = cut.truth[a] / (cut.truth[a] - cut.truth[b]);
+      Point w = to - from;
+      for (std::size_t i = 0; i < 3; ++i) w[i] = from[i] + t * w[i];
+      const Q error = rational(cone.corners.error(c));
+      ASSERT_LE(square(rational(cone.corners.w(c)) - w), error * error) << k;
+      ASSERT_EQ(at.sign_at_a, weight[a].sign) << k;
+      ASSERT_LE(error, Q(1e-2)) << k;
+    }
+  }
+}
+
+/// A square is cut by planes through x and points of a lattice, many of which go through its corners or touch it.
+TYPED_TEST(ConeOf, CutsLeavesWhatIsPositive) {
+  const Vec3 x;
+  const std::array<Vec3, 4> corners{Vec3{-1, -1, 1}, Vec3{1, -1, 1}, Vec3{1, 1, 1}, Vec3{-1, 1, 1}};
+  const std::array<const Vec3*, 4> loop{&corners[0], &corners[1], &corners[2], &corners[3]};
+  std::array<int, 3> cut{};  // by how many corners lie in the plane
+  for (int n = 0; n < 125; ++n) {
+    const Vec3 normal{double(n % 5 - 2), double(n / 5 % 5 - 2), double(n / 25 - 2)};
+    std::array<double, 4> height{};
+    std::vector<Signed<TypeParam>> weight;
+    for (std::size_t c = 0; c < 4; ++c) {
+      height[c] = dot(normal, corners[c]);
+      weight.push_back({TypeParam(height[c]), TypeParam(0), height[c] > 0 ? 1 : height[c] < 0 ? -1 : 0});
+    }
+    if (std::ranges::none_of(height, [](double h) { return h > 0; })) continue;
+    Cone<TypeParam> cone;
+    set_cone<TypeParam>(cone, x, loop, 1);
+    ConeSide<TypeParam> closing;
+    closing.exact = {ViewPlane::Kind::horizon};
+    clip(cone, weight, ViewPoint::Kind::at_horizon, closing);
+    std::size_t edges = 0, crossed = 0;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double a = height[c], b = height[(c + 1) % 4];
+      const auto edge = std::ranges::find_if(cone.sides, [&](const auto& side) {
+        return side.exact.kind == ViewPlane::Kind::edge && side.from == c && side.to == (c + 1) % 4;
+      });
+      ASSERT_EQ(edge != cone.sides.end(), a > 0 || b > 0 || (a == 0 && b == 0)) << n << ", edge " << c;
+      ASSERT_EQ(cone.corners.is_kept(c), a >= 0) << n << ", corner " << c;
+      crossed += a * b < 0;
+      if (edge == cone.sides.end()) continue;
+      ++edges;
+      ASSERT_NEAR(static_cast<double>(edge->stretch.lo), a < 0 ? a / (a - b) : 0, 1e-15) << n << ", edge " << c;
+      ASSERT_NEAR(static_cast<double>(edge->stretch.hi), b < 0 ? a / (a - b) : 1, 1e-15) << n << ", edge " << c;
+    }
+    ASSERT_EQ(cone.corners.size(), 4 + crossed) << n;
+    const bool is_cut = std::ranges::any_of(height, [](double h) { return h < 0; });
+    ASSERT_EQ(cone.sides.size(), edges + (is_cut ? 1 : 0)) << n;
+    if (!is_cut) continue;
+    ++cut[static_cast<std::size_t>(std::ranges::count(height, 0.0))];
+    const auto closed =
+        std::ranges::find(cone.sides, ViewPlane::Kind::horizon, [](const auto& s) { return s.exact.kind; });
+    const auto w = [&](std::uint32_t k) {
+      const auto at = cone.corners.w(k);
+      return Vec3{static_cast<double>(at.x), static_cast<double>(at.y), static_cast<double>(at.z)};
+    };
+    const Vec3 from = w(closed->from), to = w(closed->to);
+    ASSERT_LE(std::max(std::fabs(dot(normal, from)), std::fabs(dot(normal, to))), 1e-14) << n;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double inside = dot(exitance::cross(from, to), corners[c]);
+      ASSERT_TRUE(height[c] <= 0 || inside > 1e-3) << n << ": it runs as the others do";
+    }
+  }
+  for (const int times : cut) EXPECT_GT(times, 3);
 }
 
 Signed<double> signed_value(double value, double error = 0) {
