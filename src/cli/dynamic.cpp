@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "src/cli/console.h"
@@ -209,7 +210,9 @@ class Dynamic {
     how.save_seconds = save_seconds_;
     how.stop = [this] { return stop(); };
     how.finished = [this](const FrameList& so_far) { keep_frames(so_far); };
-    partial_ = follow_shots(given, how, results_->draft()) == ShotsEnd::unfinished;
+    ShotFrames frames = follow_shots(given, how, results_->draft());
+    frames_ = std::move(frames.list);
+    partial_ = !frames.finished;
     finish();
   }
 
@@ -250,8 +253,8 @@ class Dynamic {
     EditedScene scene(given.scene);
     for (const Event& event : given.events) {
       scene.apply(event.edit);
-      key += fmt::format("event {} {} {} {}\n", event.time, name_of(event.edit.operation), event.edit.object,
-                         scene_hash(scene.scene()));
+      key += fmt::format("event {} {} {} {} {}\n", event.time, name_of(event.edit.operation), event.edit.object,
+                         scene_hash(scene.scene()), given.scene.objects[event.edit.object].name);
     }
     return key;
   }

@@ -82,12 +82,13 @@ class Frames {
     if (checkpoint_.has_forgotten()) print_warning(checkpoint_.what_was_forgotten());
   }
 
-  ShotsEnd follow() {
+  /// Whether all frames are done.
+  bool follow() {
     if (!take_up()) begin();
     while (result_.frames.size() < stations_.size()) {
       if (result_.frames.size() > 0 && stop()) {
         keep();
-        return ShotsEnd::unfinished;
+        return false;
       }
       const Station& station = stations_[result_.frames.size()];
       if (!has_begun_) {
@@ -95,11 +96,12 @@ class Frames {
         has_begun_ = true;
       }
       frame(station);
-      if (stopped_) return ShotsEnd::unfinished;
+      if (stopped_) return false;
     }
     checkpoint_.remove();
-    return ShotsEnd::finished;
+    return true;
   }
+  const FrameList& result() const { return result_; }
 
  private:
   bool stop() { return stopped_ = stopped_ || (options_.stop && options_.stop()); }
@@ -134,11 +136,17 @@ class Frames {
                                                  : stations_[frames.size() - 1].last;
     std::vector<Edit> edits;
     for (std::size_t k = 0; k < events; ++k) edits.push_back(given_.events[k].edit);
-    session_.emplace(EditSession::taken_up(given_.scene, options_.session, edits, file, "session_"));
-    if (options_.references)
-      references_.emplace(FrameReferences::taken_up(given_.scene, options_.session, edits, file, "references_"));
     const std::vector<double> seconds = file.doubles("edit_seconds");
     if (seconds.size() != 1) file.refuse("it does not tell how long edits took");
+    const SessionWork work = read_work(file);
+    std::vector<double> reference_before = file.doubles("reference_before");
+    std::string summary = file.text("summary");
+    EditSession session = EditSession::taken_up(given_.scene, options_.session, edits, file, "session_");
+    std::optional<FrameReferences> references;
+    if (options_.references)
+      references.emplace(FrameReferences::taken_up(given_.scene, options_.session, edits, file, "references_"));
+
+    // All of it can be read.
     has_begun_ = has_begun[0] != 0;
     if (has_begun_) {
       const Station& station = stations_[frames.size()];
@@ -146,9 +154,11 @@ class Frames {
         moved_[given_.events[k].edit.object] = given_.events[k].line;
     }
     edit_seconds_ = seconds[0];
-    work_ = read_work(file);
-    reference_before_ = file.doubles("reference_before");
-    result_ = {std::move(frames), file.text("summary")};
+    work_ = work;
+    reference_before_ = std::move(reference_before);
+    result_ = {std::move(frames), std::move(summary)};
+    session_.emplace(std::move(session));
+    references_ = std::move(references);
   }
 
   void keep() {
@@ -195,9 +205,11 @@ class Frames {
 
   /// By the decades that lie between all light and the tolerance.
   void show_progress() {
+    if (since_shown_.seconds() < 0.1) return;
+    since_shown_ = RunClock();
+    const double tolerance = std::min(options_.session.tolerance, 0.5);
     const double left = session_->propagation_left() / session_->solution().power_of_sources();
-    const double done = std::log(std::max(options_.session.tolerance, left)) / std::log(options_.session.tolerance);
-    shown_ = std::clamp(done, shown_, 1.0);
+    shown_ = std::clamp(std::log(std::max(tolerance, left)) / std::log(tolerance), shown_, 1.0);
     display_.show(shown_, fmt::format("frame {} of {}", result_.frames.size(), stations_.size() - 1));
   }
 
@@ -311,6 +323,7 @@ class Frames {
   Checkpoint checkpoint_;
   SavePace pace_;
   ProgressDisplay display_;
+  RunClock since_shown_;
   double shown_ = 0;
 
   FrameList result_;
@@ -327,8 +340,11 @@ class Frames {
 
 }  // namespace
 
-ShotsEnd follow_shots(const DynamicScene& given, const ShotFrameOptions& options, const std::filesystem::path& folder) {
-  return Frames(given, options, folder).follow();
+ShotFrames follow_shots(const DynamicScene& given, const ShotFrameOptions& options,
+                        const std::filesystem::path& folder) {
+  Frames frames(given, options, folder);
+  const bool finished = frames.follow();
+  return {frames.result(), finished};
 }
 
 }  // namespace exitance

@@ -33,14 +33,15 @@ struct ShotFrameOptions {
   std::function<void(const FrameList&)> finished;  ///< told after each frame what there is so far
 };
 
-enum class ShotsEnd : std::uint8_t {
-  finished,
-  unfinished,  ///< it was stopped, and with the same options goes on from there
+struct ShotFrames {
+  FrameList list;         ///< also of frames that an earlier run has done, and of the one in hand where it was stopped
+  bool finished = false;  ///< all are done; if not, the same options go on from there
 };
 
 /// Follows the scene through its events; frame 0 is the scene before the first. Warns of objects that pass through
 /// others or have left the scene. Writes frame_*.png and frame_*.vtp into the folder. Errors are eq. 7 of George et al.
 /// (1990) against the converged solution of each frame.
-ShotsEnd follow_shots(const DynamicScene& given, const ShotFrameOptions& options, const std::filesystem::path& folder);
+ShotFrames follow_shots(const DynamicScene& given, const ShotFrameOptions& options,
+                        const std::filesystem::path& folder);
 
 }  // namespace exitance

@@ -149,7 +149,7 @@ bool EditSession::step(DynamicRadiosity& of, SessionWork& work) {
 }
 
 SessionWork EditSession::work(const Budget& budget, SessionWork so_far) {
-  const auto start = Clock::now();
+  auto start = Clock::now();
   const double before = so_far.seconds;
   SessionWork work = std::move(so_far);
   const auto seconds = [&] { return before + std::chrono::duration<double>(Clock::now() - start).count(); };
@@ -164,7 +164,9 @@ SessionWork EditSession::work(const Budget& budget, SessionWork so_far) {
     if (!step(state(), work)) break;
     if (budget.after_shot) {
       work.seconds = seconds();
+      const auto told = Clock::now();
       budget.after_shot(work);
+      start += Clock::now() - told;
     }
     if (budget.interrupted && budget.interrupted()) {
       work.interrupted = true;

@@ -71,7 +71,8 @@ struct Budget {
   std::optional<double> seconds;
   /// Asked after every shot: true when there is new input. May be empty.
   std::function<bool()> interrupted;
-  /// Told after every shot what has been done in this stretch: the time to keep it (EditSession::write). May be empty.
+  /// Told after every shot what has been done in this stretch: the time to keep it (EditSession::write), which counts as
+  /// no work. May be empty.
   std::function<void(const SessionWork&)> after_shot;
 };
 

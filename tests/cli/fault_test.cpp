@@ -317,6 +317,10 @@ TEST_P(KilledFrames, GoOnToTheSameBits) {
   for (int k = 0; k < 3; ++k) end_when_more_is_kept(kept_, command("killed"), SIGKILL, -1);
   end_when_more_is_kept(kept_, command("killed"), SIGINT, 4);
   EXPECT_NO_THROW(json_in(scratch_ / "killed/frames.json"));
+  const Outcome stopped = run(command("killed") + " --json --time-limit 1e-3");
+  EXPECT_EQ(stopped.code, 4);
+  EXPECT_GE(nlohmann::json::parse(stopped.out).size(), 1u) << "what an earlier run has done is told";
+  EXPECT_NE(stopped.err.find("the same command goes on"), std::string::npos) << stopped.err;
   const Outcome last = run(command("killed"));
   EXPECT_EQ(last.code, 0) << last.err;
   EXPECT_FALSE(exists(kept_));
