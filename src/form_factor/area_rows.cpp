@@ -30,11 +30,8 @@ FormFactorMatrix sum_to_patches(const FormFactorMatrix& elements, const PatchMes
   return patches;
 }
 
-bool may_be_covered(const PolygonSoup& soup, std::span<const PatchPiece> pieces) {
-  return std::ranges::any_of(pieces, [&](const PatchPiece& piece) {
-    return std::ranges::any_of(soup.coplanar(piece.facet),
-                               [&](std::uint32_t t) { return soup.covers(t, piece.facet); });
-  });
+bool may_be_covered(const Contacts& contacts, std::span<const PatchPiece> pieces) {
+  return std::ranges::any_of(pieces, [&](const PatchPiece& piece) { return contacts.may_be_covered(piece.facet); });
 }
 
 AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairRunOptions& options, std::uint64_t seed,
@@ -48,10 +45,11 @@ AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairRun
   result.resumed = run.resumed;
   const FormFactorMatrix elements = matrix_of(run.rows, n);
   const std::vector<double> sums = row_sums(elements);
+  const Contacts contacts(soup);
   for (std::uint32_t e = 0; e < n; ++e) {
     const auto errors = elements.row_error(e);
     result.largest_row_error = std::max(result.largest_row_error, std::accumulate(errors.begin(), errors.end(), 0.0));
-    if (may_be_covered(soup, mesh.pieces_of(mesh.elements[e]))) {
+    if (may_be_covered(contacts, mesh.pieces_of(mesh.elements[e]))) {
       ++result.covered_elements;
     } else {
       result.closure_max_defect = std::max(result.closure_max_defect, std::fabs(sums[e] - 1));

@@ -9,6 +9,7 @@
 #include "src/form_factor/form_factor_matrix.h"
 #include "src/form_factor/pair_run.h"
 #include "src/scene/patch_mesh.h"
+#include "src/visibility/contacts.h"
 
 namespace exitance {
 
@@ -36,7 +37,8 @@ AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairRun
 /// Columns of elements summed to columns of patches, with the errors and the rounding.
 FormFactorMatrix sum_to_patches(const FormFactorMatrix& elements, const PatchMesh& mesh);
 
-/// Whether something in the planes of an element's or a patch's pieces covers it, wholly or in part, or might.
-bool may_be_covered(const PolygonSoup& soup, std::span<const PatchPiece> pieces);
+/// Whether something in the planes of an element's or a patch's pieces covers it, wholly or in part, or might; also if
+/// it lies there but for rounding.
+bool may_be_covered(const Contacts& contacts, std::span<const PatchPiece> pieces);
 
 }  // namespace exitance

@@ -57,7 +57,7 @@ std::string_view describe(Fault fault) {
 }
 
 FaultFinder::FaultFinder(const Contender& contender, const PatchMesh& mesh, const ExchangeScene& exchange)
-    : contender_(contender), mesh_(mesh), exchange_(exchange) {
+    : contender_(contender), mesh_(mesh), exchange_(exchange), contacts_(exchange.soup()) {
   if (contender.maker() != Maker::shadow_rays) return;
   RayOptions options = std::get<RayOptions>(contender.how);
   if (options.estimator == Estimator::centre) return;
@@ -132,7 +132,7 @@ Fault FaultFinder::of_unknown(const WorstPair& pair, PairClass kind) const {
 
 bool FaultFinder::touched(const WorstPair& pair) const {
   const auto may_be = [&](std::uint32_t patch) {
-    return may_be_covered(exchange_.soup(), mesh_.pieces_of(mesh_.patches[patch]));
+    return may_be_covered(contacts_, mesh_.pieces_of(mesh_.patches[patch]));
   };
   return may_be(pair.i) || may_be(pair.j);
 }

@@ -9,6 +9,7 @@
 #include "src/reference/contender.h"
 #include "src/reference/matrix_comparison.h"
 #include "src/scene/patch_mesh.h"
+#include "src/visibility/contacts.h"
 #include "src/visibility/shadow_rays.h"
 
 namespace exitance {
@@ -55,6 +56,7 @@ class FaultFinder {
   const Contender& contender_;
   const PatchMesh& mesh_;
   const ExchangeScene& exchange_;
+  Contacts contacts_;
   std::optional<ShadowRays> more_rays_, nearer_rays_;  // with half the offset
 };
 

@@ -4,10 +4,17 @@
 #include <vector>
 
 #include "geometry/contact.h"
+#include "geometry/level.h"
 #include "geometry/surface_pieces.h"
 #include "src/scene/scene_check.h"
 
 namespace exitance {
+namespace {
+
+/// Of the extent: how far turning a scene moves what lay in one plane out of it, and some more.
+constexpr double kRounding = 0x1p-47;
+
+}  // namespace
 
 bool sees_only_fronts(const Scene& scene) {
   if (std::ranges::any_of(scene.surfaces, &Surface::obstruction_only) || !is_closed(scene)) return false;
@@ -18,8 +25,11 @@ bool sees_only_fronts(const Scene& scene) {
   const auto shows_its_front = [](const SurfacePiece& piece) {
     return piece.area == 0 || (piece.closed && (piece.enclosed ? piece.volume > 0 : piece.volume < 0));
   };
-  return found.open_edges.empty() && std::ranges::all_of(found.pieces, shows_its_front) &&
-         coplanar_overlaps(polygons).empty();
+  if (!found.open_edges.empty() || !std::ranges::all_of(found.pieces, shows_its_front) ||
+      !coplanar_overlaps(polygons).empty())
+    return false;
+  const PolygonSoup soup(polygons);
+  return !any_are_level(soup, kRounding * soup.extent());
 }
 
 }  // namespace exitance
