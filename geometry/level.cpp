@@ -1,11 +1,12 @@
 #include "geometry/level.h"
 
 #include <algorithm>
-#include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <vector>
 
+#include "geometry/convex_part.h"
 #include "geometry/near_pairs.h"
+#include "geometry/polygon.h"
 
 namespace exitance {
 namespace {
@@ -13,31 +14,12 @@ namespace {
 /// Of an area: what rounding lets facets overlap that meet along an edge.
 constexpr double kNothing = 0x1p-30;
 
-using Loop = boost::container::small_vector<Vec3, 8>;
-
-/// Twice the area, along the normal of a loop that is nearly planar.
-double twice_area(const Loop& loop) {
-  Vec3 sum;
-  for (std::size_t k = 2; k < loop.size(); ++k) sum = sum + cross(loop[k - 1] - loop[0], loop[k] - loop[0]);
-  return norm(sum);
-}
+using Loop = std::vector<Vec3>;
 
 Loop loop_of(std::span<const Corner> corners) {
   Loop loop;
   for (const Corner& c : corners) loop.push_back(c.at);
   return loop;
-}
-
-/// What of a loop lies where dot(normal, v − at) ≥ 0 (Sutherland and Hodgman 1974).
-Loop part(const Loop& loop, const Vec3& normal, const Vec3& at) {
-  Loop kept;
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Vec3 &p = loop[k], &q = loop[(k + 1) % loop.size()];
-    const double at_p = dot(normal, p - at), at_q = dot(normal, q - at);
-    if (at_p >= 0) kept.push_back(p);
-    if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) kept.push_back(p + at_p / (at_p - at_q) * (q - p));
-  }
-  return kept;
 }
 
 /// Whether all corners lie more than `limit` before a plane, or all more than that behind it.
@@ -64,12 +46,13 @@ bool lies_flat_on(const PolygonSoup& soup, std::uint32_t f, std::uint32_t g, dou
   const Loop on = loop_of(soup.corners(soup.facets()[f]));
   Loop common = loop_of(soup.corners(soup.facets()[g]));
   if (is_clear_of(common, plane, limit)) return false;
-  const double enough = kNothing * std::min(twice_area(on), twice_area(common));
+  const double enough = kNothing * std::min(norm(area_vector(on)), norm(area_vector(common)));
   for (std::size_t k = 0; k < on.size(); ++k) {
-    common = part(common, cross(plane.normal, on[(k + 1) % on.size()] - on[k]), on[k]);
+    const Vec3 inward = cross(plane.normal, on[(k + 1) % on.size()] - on[k]);
+    common = convex_part(common, [&](const Vec3& v) { return dot(inward, v - on[k]); });
     // Of facets that meet along an edge, at any angle, rounding makes overlaps some ulps of their coordinates wide, and
     // there they lie no farther apart: an overlap must be wider than what it is judged by.
-    if (twice_area(common) <= std::max(enough, 4 * near * extent_of(common))) return false;
+    if (norm(area_vector(common)) <= std::max(enough, 2 * near * extent_of(common))) return false;
   }
   return std::ranges::all_of(common,
                              [&](const Vec3& v) { return std::fabs(dot(plane.normal, v - plane.origin)) <= limit; });

@@ -7,6 +7,9 @@
 
 namespace exitance {
 
+/// Of a scene's extent: how far turning it moves what lay in one plane out of it, and some more.
+inline constexpr double kLevel = 0x1p-47;
+
 /// Whether two facets overlap with more than 2^-30 of the smaller one's area and in more than a strip of 2 `near` [m]
 /// and lie, wherever they do, no more than `near` apart, as far as double precision tells; the same in either order.
 /// Elsewhere they may lie farther apart: narrow ones are turned by more than rounding. Facets that meet along an edge,

@@ -177,15 +177,8 @@ class Dynamic {
       how.links.tolerance = options_.tolerance;
       how.links.mesh.memory_limit = memory_limit_.bytes();
       how.method = *by_links;
-      how.path = path_;
-      if (budget_ms_) how.budget = *budget_ms_ / 1000;
-      how.work_off = work_off_;
-      how.references = reference_;
-      how.images = images_;
-      how.image_size = image_size_;
-      how.stop = [this] { return stop(); };
       how.abandon = interrupted;
-      how.finished = [this](const FrameList& so_far) { keep_frames(so_far); };
+      set_frames(how);
       Checkpoint of_shots(unfinished(), "work links\n", Checkpoint::OtherRun::forgotten);
       if (of_shots.has_forgotten()) print_warning(of_shots.what_was_forgotten());
       partial_ = follow_links(given, how, results_->draft()) == LinksEnd::unfinished || partial_;
@@ -195,21 +188,14 @@ class Dynamic {
     ShotFrameOptions how;
     how.session = options_;
     how.method = method_;
-    how.path = path_;
     how.budget_shots = budget_shots_;
-    if (budget_ms_) how.budget_seconds = *budget_ms_ / 1000;
     how.replayed = replayed;
-    how.work_off = work_off_;
-    how.references = reference_;
     how.kept_references = reference_file_;
     how.memory = memory_limit_.bytes();
-    how.images = images_;
-    how.image_size = image_size_;
     how.checkpoint = unfinished();
     how.key = key_of(given) + fmt::format("shots {}\n", fmt::join(replayed, " "));
     how.save_seconds = save_seconds_;
-    how.stop = [this] { return stop(); };
-    how.finished = [this](const FrameList& so_far) { keep_frames(so_far); };
+    set_frames(how);
     ShotFrames frames = follow_shots(given, how, results_->draft());
     frames_ = std::move(frames.list);
     partial_ = !frames.finished;
@@ -227,6 +213,17 @@ class Dynamic {
       throw CLI::ValidationError("--importance-points", "needs --importance estimated");
   }
 
+  void set_frames(FrameOptions& how) {
+    how.path = path_;
+    if (budget_ms_) how.budget = *budget_ms_ / 1000;
+    how.work_off = work_off_;
+    how.references = reference_;
+    how.images = images_;
+    how.image_size = image_size_;
+    how.stop = [this] { return stop(); };
+    how.finished = [this](const FrameList& so_far) { keep_frames(so_far); };
+  }
+
   /// Whatever happens later, the frames so far are there: first their files, then the list that names them.
   void keep_frames(const FrameList& so_far) {
     frames_ = so_far;
@@ -240,9 +237,7 @@ class Dynamic {
 
   /// All that frames show and tell depends on.
   std::string key_of(const DynamicScene& given) const {
-    std::string key = key_of_options(verb_, kOfNoConsequence) +
-                      fmt::format("scene {}\nmesh {} {} {}\n", scene_hash(given.scene), options_.mesh.patch_size,
-                                  options_.mesh.elements_per_edge, options_.mesh.small_patch);
+    std::string key = key_of_run(verb_, kOfNoConsequence, given.scene, options_.mesh);
     const auto add_camera = [&](double time, const Camera& camera) {
       key += fmt::format("camera {} {}", time, camera.vertical_fov_degrees);
       for (const Vec3& at : {camera.eye, camera.target, camera.up}) key += fmt::format(" {} {} {}", at.x, at.y, at.z);

@@ -4,10 +4,19 @@
 
 #include <string>
 
+#include "src/cli/console.h"
 #include "src/output/vtk.h"
 #include "src/scene/scene_check.h"
 
 namespace exitance {
+
+void warn_of_trespass(const std::string& path, const std::map<std::uint32_t, std::uint32_t>& lines,
+                      const EditedScene& scene, const PolygonSoup& soup, std::span<const FacetRange> facets) {
+  for (const auto& [object, line] : lines) {
+    for (const std::string& warning : find_trespass(scene, soup, facets, object))
+      print_warning(fmt::format("{}:{}: {}", path, line, warning));
+  }
+}
 
 void write_frame(const std::filesystem::path& folder, const DynamicScene& scene, const Frame& frame,
                  const std::function<Image(const Camera&)>& picture) {

@@ -8,11 +8,10 @@
 #include <functional>
 #include <map>
 
-#include "src/cli/console.h"
+#include "src/cli/stations.h"
 #include "src/links/hierarchical_solution.h"
 #include "src/output/image.h"
 #include "src/output/mesh_faces.h"
-#include "src/scene/trespass.h"
 #include "src/solve/scene_solution.h"
 
 namespace exitance {
@@ -35,31 +34,25 @@ class Frames {
   }
 
   LinksEnd follow() {
-    const std::vector<Event>& events = given_.events;
+    const std::vector<Station> stations = stations_of(given_.events);
     const LinkUpdate built = links_.build(interruption(false));
-    add(0, {}, built);
+    add(stations.front(), built);
     bool left = false;  // something, by the last update
     stopped_ = stopped_ || built.stopped;
-    for (std::size_t next = 0; next < events.size() && !(options_.stop && options_.stop());) {
-      const double time = events[next].time;
+    for (std::size_t k = 1; k < stations.size() && !(options_.stop && options_.stop()); ++k) {
       std::vector<Edit> edits;
-      std::vector<std::string> names;
-      std::map<std::uint32_t, std::uint32_t> lines;  // of the last edit of each object
-      for (; next < events.size() && events[next].time == time; ++next) {
-        edits.push_back(events[next].edit);
-        lines[events[next].edit.object] = events[next].line;
-        names.push_back(
-            fmt::format("{} {}", name_of(edits.back().operation), given_.scene.objects[edits.back().object].name));
-      }
+      for (std::size_t e = stations[k].first; e < stations[k].last; ++e) edits.push_back(given_.events[e].edit);
       const LinkUpdate update = links_.update(edits, options_.method, interruption());
-      for (const auto& [object, line] : lines) warn(object, line);
-      add(time, names, update);
+      const Obstacles& obstacles = links_.obstacles();
+      warn_of_trespass(options_.path, lines_of_edits(given_, stations[k]), links_.scene(), obstacles.soup(),
+                       obstacles.facets());
+      add(stations[k], update);
       left = update.pairs_left > 0;
       stopped_ = stopped_ || update.stopped;
     }
     if (left && options_.work_off && !(options_.stop && options_.stop())) {
       const LinkUpdate rest = links_.work_off(interruption(false));
-      add(events.back().time, {"work off"}, rest);
+      add(working_off(stations.back()), rest);
       left = rest.pairs_left > 0;
     }
     const bool unfinished = stopped_ || (left && !options_.budget);
@@ -81,13 +74,8 @@ class Frames {
     return how;
   }
 
-  void warn(std::uint32_t object, std::uint32_t line) const {
-    const Obstacles& obstacles = links_.obstacles();
-    for (const std::string& warning : find_trespass(links_.scene(), obstacles.soup(), obstacles.facets(), object))
-      print_warning(fmt::format("{}:{}: {}", options_.path, line, warning));
-  }
-
-  void add(double time, const std::vector<std::string>& edits, const LinkUpdate& update) {
+  void add(const Station& station, const LinkUpdate& update) {
+    const std::vector<std::string> edits = names_of_edits(given_, station);
     const std::vector<std::uint32_t> elements = links_.elements();
     const std::span<const double> B = links_.radiosity().B();
     std::optional<ConvergenceError> error;
@@ -108,7 +96,7 @@ class Frames {
     for (const Root& root : links_.tree().roots()) patches += root.present;
     Json frame;
     frame["frame"] = result_.frames.size();
-    frame["time"] = time;
+    frame["time"] = station.time;
     frame["edits"] = edits;
     frame["method"] = name_;
     frame["seconds"] = update.seconds;
@@ -141,7 +129,7 @@ class Frames {
                       {"E-E", counts.environment}, {"E-O", counts.mixed},     {"O-O", counts.dynamic},
                       {"bytes", counts.bytes}};
     frame["unit"] = given_.scene.unit;
-    if (options_.images) draw(time, elements);
+    if (options_.images) draw(station.time, elements);
     result_.summary += fmt::format(
         "frame {:3}  {:>9.4f} s  {:7} of {} links  error {}  of the 1 % {}  {}{}\n", result_.frames.size(),
         update.seconds, update.work.links_updated, counts.links(), error ? fmt::format("{:.3g}", error->all) : "-",

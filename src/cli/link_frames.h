@@ -15,18 +15,10 @@ namespace exitance {
 /// rebuild, direct, hvt, hvt-peu; none where there is none of that name.
 std::optional<LinkMethod> link_method_named(const std::string& name);
 
-struct LinkFrameOptions {
+struct LinkFrameOptions : FrameOptions {
   LinkOptions links;
   LinkMethod method = LinkMethod::hvt;
-  std::string path;                ///< of the scene file, for warnings
-  std::optional<double> budget;    ///< [s] after which the update of a frame ends; frame 0 is built in full
-  bool work_off = false;           ///< whether one more frame works off what such updates left
-  bool references = true;          ///< whether errors are found
-  bool images = true;              ///< whether pictures and VTP files are written
-  std::uint32_t image_size = 800;  ///< of the pictures, in pixels
-  std::function<bool()> stop;      ///< asked between frames and within them, by any thread
-  std::function<bool()> abandon;   ///< likewise; the frame that is being made is dropped then, or only its error
-  std::function<void(const FrameList&)> finished;  ///< told after each frame what there is so far
+  std::function<bool()> abandon;  ///< asked as `stop`; the frame that is being made is dropped then, or only its error
 };
 
 enum class LinksEnd : std::uint8_t {
@@ -36,8 +28,8 @@ enum class LinksEnd : std::uint8_t {
 };
 
 /// Follows the scene through its events; frame 0 is built before the first. Warns of objects that pass through others
-/// or have left the scene. Writes frame_*.png and frame_*.vtp into the
-/// folder. Errors are eq. 7 of George et al. (1990) against the converged solution on the same links.
+/// or have left the scene. Writes frame_*.png and frame_*.vtp into the folder. Errors are eq. 7 of George et al. (1990)
+/// against the converged solution on the same links.
 LinksEnd follow_links(const DynamicScene& given, const LinkFrameOptions& options, const std::filesystem::path& folder);
 
 }  // namespace exitance

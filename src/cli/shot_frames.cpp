@@ -4,45 +4,24 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "src/cli/console.h"
 #include "src/cli/progress_display.h"
 #include "src/cli/reference_store.h"
+#include "src/cli/stations.h"
 #include "src/dynamic/converged_reference.h"
 #include "src/dynamic/picture.h"
 #include "src/output/checkpoint.h"
 #include "src/output/run_clock.h"
 #include "src/output/save_pace.h"
 #include "src/scene/input_error.h"
-#include "src/scene/trespass.h"
 
 namespace exitance {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// What a frame follows: all events of one time, none before the first and where what was left is worked off.
-struct Station {
-  double time = 0;
-  std::size_t first = 0, last = 0;  ///< of the events
-  bool works_off = false;
-};
-
-std::vector<Station> stations_of(const std::vector<Event>& events, bool work_off) {
-  std::vector<Station> stations(1);
-  for (std::size_t next = 0; next < events.size();) {
-    Station station{events[next].time, next, next, false};
-    while (station.last < events.size() && events[station.last].time == station.time) ++station.last;
-    stations.push_back(station);
-    next = station.last;
-  }
-  if (work_off) stations.push_back({stations.back().time, events.size(), events.size(), true});
-  return stations;
-}
 
 void write_work(ArchiveWriter& file, const SessionWork& work) {
   std::vector<std::uint64_t> counts{work.propagations, work.redistributions, work.gatherings};
@@ -75,16 +54,17 @@ class Frames {
       : given_(given),
         options_(options),
         folder_(folder),
-        stations_(stations_of(given.events, options.work_off)),
+        stations_(stations_of(given.events)),
         store_(options.references ? options.kept_references : ""),
         checkpoint_(options.checkpoint, options.key, Checkpoint::OtherRun::forgotten),
         pace_(options.save_seconds) {
+    if (options.work_off) stations_.push_back(working_off(stations_.back()));
     if (checkpoint_.has_forgotten()) print_warning(checkpoint_.what_was_forgotten());
   }
 
   /// Whether all frames are done.
   bool follow() {
-    if (!take_up()) begin();
+    if (!checkpoint_.read_last([this](const ArchiveReader& file) { read(file); })) begin();
     while (result_.frames.size() < stations_.size()) {
       if (result_.frames.size() > 0 && stop()) {
         keep();
@@ -111,20 +91,6 @@ class Frames {
     if (options_.references) references_.emplace(given_.scene, options_.session, session_->solution(), options_.memory);
   }
 
-  /// What was kept last and can be read; false where there is nothing.
-  bool take_up() {
-    while (!checkpoint_.parts().empty()) {
-      const std::filesystem::path last = checkpoint_.parts().back();
-      try {
-        read(checkpoint_.open(last));
-        return true;
-      } catch (const DamagedFile&) {
-        checkpoint_.forget(last);
-      }
-    }
-    return false;
-  }
-
   void read(const ArchiveReader& file) {
     const std::vector<std::uint8_t> has_begun = file.uint8s("has_begun");
     Json frames = Json::parse(file.text("frames"), nullptr, false);
@@ -148,11 +114,6 @@ class Frames {
 
     // All of it can be read.
     has_begun_ = has_begun[0] != 0;
-    if (has_begun_) {
-      const Station& station = stations_[frames.size()];
-      for (std::size_t k = station.first; k < station.last; ++k)
-        moved_[given_.events[k].edit.object] = given_.events[k].line;
-    }
     edit_seconds_ = seconds[0];
     work_ = work;
     reference_before_ = std::move(reference_before);
@@ -184,7 +145,6 @@ class Frames {
     }
     edit_seconds_ += clock.seconds();
     if (references_) references_->apply(event.edit);
-    moved_[event.edit.object] = event.line;
   }
 
   Budget budget(const Station& station) {
@@ -199,7 +159,7 @@ class Frames {
     if (!options_.replayed.empty()) budget.shots = number < options_.replayed.size() ? options_.replayed[number] : 0;
     if (number == 0 || station.works_off) return budget;
     if (options_.budget_shots) budget.shots = options_.budget_shots;
-    budget.seconds = options_.budget_seconds;
+    budget.seconds = options_.budget;
     return budget;
   }
 
@@ -220,11 +180,8 @@ class Frames {
     const DynamicRadiosity& state = session_->solution();
     display_.clear();
     // Only now is an object that is selected where it is shown.
-    for (const auto& [object, line] : moved_) {
-      for (const std::string& warning :
-           find_trespass(session_->scene(), state.version().soup(), state.version().facet_ranges(), object))
-        print_warning(fmt::format("{}:{}: {}", options_.path, line, warning));
-    }
+    warn_of_trespass(options_.path, lines_of_edits(given_, station), session_->scene(), state.version().soup(),
+                     state.version().facet_ranges());
     const std::vector<double> B = state.element_B();
     std::optional<ConvergenceError> error;
     std::optional<std::vector<double>> reference;
@@ -233,7 +190,7 @@ class Frames {
       reference = store_.find(*session_, *references_, [this] { return stop(); });
       if (reference) error = convergence_error(state.version(), state.bands(), *reference, reference_before_, B);
     }
-    const std::vector<std::string> edits = names_of_edits(station);
+    const std::vector<std::string> edits = names_of_edits(given_, station);
     Json frame = record(station, edits, error);
     const std::string line = fmt::format(
         "frame {:3}  {:>9.3f} s  {:5} + {:5} shots  error {}  of the 1 % {}  {}\n", result_.frames.size(), seconds,
@@ -250,17 +207,6 @@ class Frames {
     has_begun_ = false;
     work_ = {};
     edit_seconds_ = 0;
-    moved_.clear();
-  }
-
-  std::vector<std::string> names_of_edits(const Station& station) const {
-    if (station.works_off) return {"work off"};
-    std::vector<std::string> names;
-    for (std::size_t k = station.first; k < station.last; ++k) {
-      const Edit& edit = given_.events[k].edit;
-      names.push_back(fmt::format("{} {}", name_of(edit.operation), given_.scene.objects[edit.object].name));
-    }
-    return names;
   }
 
   Json record(const Station& station, const std::vector<std::string>& edits,
@@ -331,10 +277,9 @@ class Frames {
   std::optional<FrameReferences> references_;
   std::vector<double> reference_before_;
   // Of the frame in hand:
-  bool has_begun_ = false;                        // its edits were made
-  SessionWork work_;                              // so far
-  double edit_seconds_ = 0;                       // of its edits
-  std::map<std::uint32_t, std::uint32_t> moved_;  // objects of its edits, and the lines of the last of these
+  bool has_begun_ = false;   // its edits were made
+  SessionWork work_;         // so far
+  double edit_seconds_ = 0;  // of its edits
   bool stopped_ = false;
 };
 

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,24 +12,16 @@
 
 namespace exitance {
 
-struct ShotFrameOptions {
+struct ShotFrameOptions : FrameOptions {
   SessionOptions session;
   std::string method;                         ///< its name
-  std::string path;                           ///< of the scene file, for warnings
   std::optional<std::uint64_t> budget_shots;  ///< most of a frame after the first
-  std::optional<double> budget_seconds;       ///< likewise
   std::vector<std::uint64_t> replayed;        ///< by frame; those behind have none. Empty: nothing is replayed
-  bool work_off = false;                      ///< whether one more frame works off what was left
-  bool references = true;                     ///< whether errors are found
   std::filesystem::path kept_references;      ///< where their solutions are kept for other runs; empty: nowhere
   std::uint64_t memory = 0;                   ///< for the form factors of references [bytes]
-  bool images = true;                         ///< whether pictures and VTP files are written
-  std::uint32_t image_size = 800;             ///< of the pictures, in pixels
   std::filesystem::path checkpoint;           ///< where what was shot is kept until all frames are done
-  std::string key;             ///< what it depends on, as a Checkpoint's; with another one all begins anew
-  double save_seconds = 30;    ///< how often
-  std::function<bool()> stop;  ///< asked after every shot; then the frame in hand is the last
-  std::function<void(const FrameList&)> finished;  ///< told after each frame what there is so far
+  std::string key;           ///< what it depends on, as a Checkpoint's; with another one all begins anew
+  double save_seconds = 30;  ///< how often
 };
 
 struct ShotFrames {

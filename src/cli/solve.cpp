@@ -28,7 +28,6 @@
 #include "src/output/process_memory.h"
 #include "src/output/report.h"
 #include "src/output/result_folder.h"
-#include "src/scene/scene_hash.h"
 #include "src/solve/scene_solution.h"
 #include "src/solve/solution_files.h"
 
@@ -281,11 +280,7 @@ class Solve {
 
   std::string unfinished() const { return (std::filesystem::path(folder_) / ResultFolder::kUnfinished).string(); }
 
-  std::string key_of(const Scene& scene) const {
-    return key_of_options(verb_, kOfNoConsequence) +
-           fmt::format("scene {}\nmesh {} {} {}\n", scene_hash(scene), options_.mesh.patch_size,
-                       options_.mesh.elements_per_edge, options_.mesh.small_patch);
-  }
+  std::string key_of(const Scene& scene) const { return key_of_run(verb_, kOfNoConsequence, scene, options_.mesh); }
 
   void end(const Report& report, const SceneSolution& solution) const {
     const auto with = [](ExitCode code, const std::string& message) {

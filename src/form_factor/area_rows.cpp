@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/level.h"
 #include "src/form_factor/pair_sample.h"
 
 namespace exitance {
@@ -30,8 +31,15 @@ FormFactorMatrix sum_to_patches(const FormFactorMatrix& elements, const PatchMes
   return patches;
 }
 
-bool may_be_covered(const Contacts& contacts, std::span<const PatchPiece> pieces) {
-  return std::ranges::any_of(pieces, [&](const PatchPiece& piece) { return contacts.may_be_covered(piece.facet); });
+bool may_be_covered(const PolygonSoup& soup, const Contacts& contacts, std::span<const PatchPiece> pieces) {
+  return std::ranges::any_of(pieces, [&](const PatchPiece& piece) {
+    const std::uint32_t f = piece.facet;
+    // Most that lie in one plane but for rounding only meet along an edge.
+    const auto overlaps = [&](std::uint32_t t) {
+      return std::ranges::binary_search(soup.coplanar(f), t) || are_level(soup, t, f, kLevel * soup.extent());
+    };
+    return std::ranges::any_of(contacts.covering(f), overlaps) || std::ranges::any_of(contacts.level_with(f), overlaps);
+  });
 }
 
 AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairRunOptions& options, std::uint64_t seed,
@@ -49,7 +57,7 @@ AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairRun
   for (std::uint32_t e = 0; e < n; ++e) {
     const auto errors = elements.row_error(e);
     result.largest_row_error = std::max(result.largest_row_error, std::accumulate(errors.begin(), errors.end(), 0.0));
-    if (may_be_covered(contacts, mesh.pieces_of(mesh.elements[e]))) {
+    if (may_be_covered(soup, contacts, mesh.pieces_of(mesh.elements[e]))) {
       ++result.covered_elements;
     } else {
       result.closure_max_defect = std::max(result.closure_max_defect, std::fabs(sums[e] - 1));

@@ -39,6 +39,6 @@ FormFactorMatrix sum_to_patches(const FormFactorMatrix& elements, const PatchMes
 
 /// Whether something in the planes of an element's or a patch's pieces covers it, wholly or in part, or might; also if
 /// it lies there but for rounding.
-bool may_be_covered(const Contacts& contacts, std::span<const PatchPiece> pieces);
+bool may_be_covered(const PolygonSoup& soup, const Contacts& contacts, std::span<const PatchPiece> pieces);
 
 }  // namespace exitance

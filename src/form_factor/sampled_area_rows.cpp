@@ -154,7 +154,7 @@ SampledAreaRows sampled_area_rows(const PatchMesh& mesh, const PolygonSoup& soup
   const std::vector<double> sums = row_sums(result.F);
   const Contacts contacts(soup);
   for (std::size_t k = 0; k < sums.size(); ++k) {
-    if (may_be_covered(contacts, pieces_of(mesh, receivers, k))) {
+    if (may_be_covered(soup, contacts, pieces_of(mesh, receivers, k))) {
       ++result.statistics.covered_points;
     } else {
       result.statistics.closure_max_defect = std::max(result.statistics.closure_max_defect, std::fabs(sums[k] - 1));

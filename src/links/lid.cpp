@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "geometry/convex_part.h"
+
 namespace exitance {
 namespace {
 
@@ -24,14 +26,7 @@ double value(const HalfSpace& side, const Vec3& v) {
 
 /// Of a convex loop what lies on one side of a line: sign 1 inside, −1 outside.
 Loop part(const Loop& loop, const HalfSpace& side, double sign) {
-  Loop kept;
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Vec3 &p = loop[k], &q = loop[(k + 1) % loop.size()];
-    const double at_p = sign * value(side, p), at_q = sign * value(side, q);
-    if (at_p >= 0) kept.push_back(p);
-    if ((at_p > 0 && at_q < 0) || (at_p < 0 && at_q > 0)) kept.push_back(p + at_p / (at_p - at_q) * (q - p));
-  }
-  return kept;
+  return convex_part(loop, [&](const Vec3& v) { return sign * value(side, v); });
 }
 
 std::array<double, 4> key(const HalfSpace& side) {

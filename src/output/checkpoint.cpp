@@ -114,6 +114,18 @@ ArchiveReader Checkpoint::open(const fs::path& part) const {
   return file;
 }
 
+bool Checkpoint::read_last(const std::function<void(const ArchiveReader&)>& read) {
+  while (!parts_.empty()) {
+    try {
+      read(open(parts_.back()));
+      return true;
+    } catch (const DamagedFile&) {
+      forget(parts_.back());
+    }
+  }
+  return false;
+}
+
 void Checkpoint::add(const std::function<void(ArchiveWriter&)>& write) {
   const fs::path path = folder_ / fmt::format("{}{:06}{}", kPrefix, next_, kSuffix);
   ArchiveWriter file(path, kKind, Packing::quick);

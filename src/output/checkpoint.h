@@ -41,6 +41,10 @@ class Checkpoint {
   /// with another key, naming what differs.
   ArchiveReader open(const std::filesystem::path& part) const;
 
+  /// Has `read` read the part that was added last; one that is damaged is forgotten, and the one before it read. False
+  /// where none is left: `read` may have begun then. Throws what `read` throws, but for DamagedFile.
+  bool read_last(const std::function<void(const ArchiveReader&)>& read);
+
   /// Has `write` fill another part; "key" is taken. When it returns all is on the disk: only then may it be reported as
   /// finished. A file and a wait for the disk each time, so better every few seconds. Throws InputError when the system
   /// refuses.

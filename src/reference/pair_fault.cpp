@@ -132,7 +132,7 @@ Fault FaultFinder::of_unknown(const WorstPair& pair, PairClass kind) const {
 
 bool FaultFinder::touched(const WorstPair& pair) const {
   const auto may_be = [&](std::uint32_t patch) {
-    return may_be_covered(contacts_, mesh_.pieces_of(mesh_.patches[patch]));
+    return may_be_covered(exchange_.soup(), contacts_, mesh_.pieces_of(mesh_.patches[patch]));
   };
   return may_be(pair.i) || may_be(pair.j);
 }

@@ -9,13 +9,6 @@
 #include "src/scene/scene_check.h"
 
 namespace exitance {
-namespace {
-
-/// Of the extent: how far turning a scene moves what lay in one plane out of it, and some more.
-constexpr double kRounding = 0x1p-47;
-
-}  // namespace
-
 bool sees_only_fronts(const Scene& scene) {
   if (std::ranges::any_of(scene.surfaces, &Surface::obstruction_only) || !is_closed(scene)) return false;
   std::vector<Polygon> polygons;
@@ -29,7 +22,7 @@ bool sees_only_fronts(const Scene& scene) {
       !coplanar_overlaps(polygons).empty())
     return false;
   const PolygonSoup soup(polygons);
-  return !any_are_level(soup, kRounding * soup.extent());
+  return !any_are_level(soup, kLevel * soup.extent());
 }
 
 }  // namespace exitance

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -225,20 +226,11 @@ class Shooting {
   std::uint64_t shots_ = 0;
 };
 
-/// What was kept last and can be read: what cannot is forgotten. The beginning where there is nothing, or no
-/// checkpoint.
+/// As it was kept last; the beginning where nothing was, or there is no checkpoint.
 Shooting taken_up(const Discretisation& d, Checkpoint* checkpoint) {
-  while (checkpoint != nullptr && !checkpoint->parts().empty()) {
-    const std::filesystem::path last = checkpoint->parts().back();
-    try {
-      Shooting state(d);
-      state.read(checkpoint->open(last));
-      return state;
-    } catch (const DamagedFile&) {
-      checkpoint->forget(last);
-    }
-  }
-  return Shooting(d);
+  std::optional<Shooting> kept;
+  const auto read = [&](const ArchiveReader& file) { kept.emplace(d).read(file); };
+  return checkpoint != nullptr && checkpoint->read_last(read) ? *std::move(kept) : Shooting(d);
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "src/scene/reader.h"
+#include "tests/scene/turned_scene.h"
 
 namespace exitance {
 namespace {
@@ -50,22 +50,8 @@ TEST(FrontView, IsSpoiltByWhatOnlyObstructsAndBySheetsAndTurnedSolids) {
 TEST(FrontView, IsSpoiltByContactsThatRoundingHasMoved) {
   const Scene room = read_scene(EXITANCE_SOURCE_DIR "/data/furnace_cube.toml");
   for (const double height : {0.0, 0.25}) {
-    for (const double angle : {0.0, 0.3, 1.1, 2.2}) {
-      Scene scene = room;
-      for (Surface surface : room.surfaces) {
-        for (Vec3& p : surface.polygon.outer) p = {0.25 + 0.5 * p.x, 0.25 + 0.5 * p.y, height + 0.5 * p.z};
-        std::ranges::reverse(surface.polygon.outer);
-        scene.surfaces.push_back(surface);
-      }
-      const double c = std::cos(angle), s = std::sin(angle);
-      for (Surface& surface : scene.surfaces) {
-        for (Vec3& p : surface.polygon.outer) {
-          const Vec3 q{c * p.x - s * p.y, s * p.x + c * p.y, p.z};
-          p = {q.x, c * q.y - s * q.z, s * q.y + c * q.z};
-        }
-      }
-      EXPECT_EQ(sees_only_fronts(scene), height > 0) << angle;
-    }
+    for (const double angle : {0.0, 0.3, 1.1, 2.2})
+      EXPECT_EQ(sees_only_fronts(turned(with_solid(room, height), angle)), height > 0) << angle;
   }
 }
 
