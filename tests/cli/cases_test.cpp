@@ -8,6 +8,7 @@
 
 #include "tests/form_factor/closed_forms.h"
 #include "tests/output/scratch_folder.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -28,8 +29,7 @@ class Cases : public testing::Test {
   }
   Outcome run_file(const std::string& file, const std::string& options = "") {
     const std::string out = (folder_ / "out").string(), err = (folder_ / "err").string();
-    const std::string command =
-        std::string(EXITANCE_PROGRAM) + " cases " + file + " " + options + " > " + out + " 2> " + err;
+    const std::string command = program() + " cases " + file + " " + options + " > " + out + " 2> " + err;
     const int status = std::system(command.c_str());
     return {WEXITSTATUS(status), contents(out), contents(err)};
   }
