@@ -103,7 +103,7 @@ class Dynamic {
     verb.add_option("--budget-shots", budget_shots_, "Most shots a frame after the first; 0: none")
         ->check(whole_number_between(0));
     verb.add_option("--budget-ms", budget_ms_,
-                    "Milliseconds of work a frame after the first, beside its edits themselves; 0: none")
+                    "Milliseconds of work a frame after the first, by shots beside its edits themselves; 0: none")
         ->check(number_between(0));
     verb.add_option("--replay", replay_, "frames.json of an earlier run whose numbers of shots to repeat");
     verb.add_flag(
