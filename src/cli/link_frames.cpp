@@ -111,6 +111,7 @@ class Frames {
     frame["links_affected"] = update.work.links_affected;
     frame["skipped"] = update.work.skipped;
     frame["pairs_left"] = update.pairs_left;
+    frame["finished"] = !update.stopped && update.pairs_left == 0 && update.exchange.converged;
     frame["refined"] = update.work.refined;
     frame["unrefined"] = update.work.unrefined;
     frame["form_factors"] = sight.form_factors;
@@ -138,9 +139,8 @@ class Frames {
     frame["unit"] = given_.scene.unit;
     if (options_.images) draw(station.time, elements);
     result_.summary += fmt::format(
-        "frame {:3}  {:>9.4f} s  {:7} of {} links  error {}  of the 1 % {}  {}{}\n", result_.frames.size(),
-        update.seconds, update.work.links_updated, counts.links(), error ? fmt::format("{:.3g}", error->all) : "-",
-        error ? fmt::format("{:.3g}", error->worst_1_percent) : "-",
+        "frame {:3}  {:>9.4f} s  {:7} of {} links  {}  {}{}\n", result_.frames.size(), update.seconds,
+        update.work.links_updated, counts.links(), in_words(error),
         left.all > 0 ? fmt::format("left undone {:.2g}, of the 1 % {:.2g}  ", left.all, left.worst_1_percent) : "",
         fmt::join(edits, ", "));
     result_.frames.push_back(std::move(frame));

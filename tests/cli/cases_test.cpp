@@ -408,8 +408,8 @@ TEST_F(Cases, FilesThatCannotBeUsedAreRefusedInOneLine) {
     EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
     EXPECT_NE(r.err.find(part), std::string::npos) << r.err;
   };
-  refused(run_file("/nowhere/cases.json"), "/nowhere/cases.json: cannot be read");
-  refused(run_file("/"), "cannot be read");
+  refused(run_file("/nowhere/cases.json"), "/nowhere/cases.json: no such file");
+  refused(run_file("/"), "is a folder");
   refused(run("{\"cases\":[\n{\"id\":1},\n{\"id\":]}"), "cases.json:3: is not JSON: syntax error");
   refused(run("{\"cases\":[\n"), "is not JSON");
   refused(run(""), "cases.json:1: is not JSON");
