@@ -102,6 +102,32 @@ TEST(Silhouette, AgreesWithTheOracle) {
   EXPECT_GT(partial, asked / 8);
 }
 
+// From each point as if it were the first that is looked from.
+TEST(Silhouette, IsFoundAnewFromEachPoint) {
+  const Polygon source{{{-4, -4, 9}, {-4, 4, 9}, {4, 4, 9}, {4, -4, 9}}, {}};
+  for (int kind = 0; kind < 6; ++kind) {
+    std::vector<Polygon> polygons = solid(kind);
+    std::vector<Role> roles(polygons.size(), Role::solid_face);
+    const auto facet = static_cast<std::uint32_t>(polygons.size());
+    polygons.push_back(source);
+    roles.push_back(Role::patch);
+    const PolygonSoup soup(polygons, roles);
+    Viewpoint view(soup);
+    double lowest = 1, highest = 0;
+    for (const Vec3& x : {Vec3{-3, -2, 0}, Vec3{3, 2.5, -0.5}, Vec3{0.25, 0.5, 0}}) {
+      Viewpoint other(soup);
+      view.look_from({x, {0, 0, 1}});
+      other.look_from({x, {0, 0, 1}});
+      const Source whole{soup.first_facet(facet), {}};
+      const double F = view.form_factor(whole).F;
+      EXPECT_EQ(F, other.form_factor(whole).F) << "solid " << kind;
+      lowest = std::min(lowest, F);
+      highest = std::max(highest, F);
+    }
+    EXPECT_GT(highest, lowest + 1e-3);
+  }
+}
+
 // Of a solid across the horizon, or below it, the whole outline tells nothing; of one that touches it neither.
 TEST(Silhouette, IsUsableOnlyAboveTheHorizon) {
   const Polygon source{{{-4, -4, 9}, {-4, 4, 9}, {4, 4, 9}, {4, -4, 9}}, {}};

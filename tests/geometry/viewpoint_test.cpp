@@ -106,6 +106,60 @@ TEST(Viewpoint, OccluderInFrontOnlyBelowTheHorizonHidesNothing) {
   }
 }
 
+// A wall that comes up to the horizon and no further, with an edge or with a corner, is not there to be seen.
+TEST(Viewpoint, ASourceThatOnlyTouchesTheHorizonIsAway) {
+  const Polygon floor{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {}};
+  for (const double last : {0.0, -0.5}) {
+    const Polygon wall{{{2, -1, 0}, {2, -1, -1}, {3, 1, -1}, {3, 1, last}}, {}};
+    for (const bool turn : {false, true}) {
+      std::vector<Polygon> scene{floor, wall};
+      for (Polygon& polygon : scene) {
+        for (Vec3& v : polygon.outer) {
+          if (turn) v = {3 * v.x - 4 * v.z, 5 * v.y, 4 * v.x + 3 * v.z};
+        }
+      }
+      const PointFormFactor seen = ask(scene, {0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}, {});
+      EXPECT_EQ(seen.visibility, Visibility::away);
+      EXPECT_NE(seen.side, Side::edge_on);
+      EXPECT_EQ(seen.F, 0);
+    }
+  }
+}
+
+// A long box that is level with the point lies beside it under a source that fills most of the hemisphere: each side
+// of the source has a part of the box on its inner side.
+TEST(Viewpoint, ABoxThatIsLevelWithThePointHidesNothing) {
+  const auto box = [](double top) {
+    const double a = 1, b = 2, c = 100;
+    return std::vector<Polygon>{{{{a, -c, -1}, {a, c, -1}, {b, c, -1}, {b, -c, -1}}, {}},
+                                {{{a, -c, top}, {b, -c, top}, {b, c, top}, {a, c, top}}, {}},
+                                {{{a, -c, -1}, {b, -c, -1}, {b, -c, top}, {a, -c, top}}, {}},
+                                {{{a, c, -1}, {a, c, top}, {b, c, top}, {b, c, -1}}, {}},
+                                {{{a, -c, -1}, {a, -c, top}, {a, c, top}, {a, c, -1}}, {}},
+                                {{{b, -c, -1}, {b, c, -1}, {b, c, top}, {b, -c, top}}, {}}};
+  };
+  const Polygon source{{{-3, -3, 1}, {-3, 3, 1}, {10, 0, 1}}, {}};
+  const auto seen = [&](double top, bool turn) {
+    std::vector<Polygon> scene = box(top);
+    scene.push_back(source);
+    for (Polygon& polygon : scene) {
+      for (Vec3& v : polygon.outer) {
+        if (turn) v = {3 * v.x - 4 * v.z, 5 * v.y, 4 * v.x + 3 * v.z};
+      }
+    }
+    const PolygonSoup soup(scene);
+    Viewpoint view(soup);
+    view.look_from({{0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}});
+    return view.form_factor({6, {}});
+  };
+  for (const bool turn : {false, true}) {
+    const PointFormFactor level = seen(0, turn);
+    EXPECT_EQ(level.visibility, Visibility::open);
+    EXPECT_NEAR(level.F, seen(-0.5, turn).F, 2 * level.error);
+    EXPECT_LT(seen(0.25, turn).F, level.F - 1e-3);
+  }
+}
+
 // A source seen from behind is not covered by what lies on its front; one seen from its front is.
 TEST(Viewpoint, CoversLieOnTheFront) {
   const Polygon source{{{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}}, {}};  // faces down, to the point

@@ -1,5 +1,7 @@
 // The kernel against the oracle, in every degenerate position.
 
+#include "geometry/visible_region.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -94,6 +96,20 @@ TEST_P(DegenerateFamily, AgreesWithTheOracle) {
 
 INSTANTIATE_TEST_SUITE_P(VisibleRegion, DegenerateFamily, testing::ValuesIn(families()),
                          [](const auto& family) { return family.param; });
+
+// Of a source nothing is there where nothing rises above the horizon, be it that corners touch it.
+TEST(VisibleRegion, OfASourceThatOnlyTouchesTheHorizonIsNone) {
+  const Polygon source{{{2, -1, 0}, {2, 1, 0}, {3, 0, -1}}, {}};
+  const PolygonSoup soup(std::vector<Polygon>{source});
+  View view(soup);
+  const std::vector<const Vec3*> corners{&soup.vertices()[0], &soup.vertices()[1], &soup.vertices()[2]};
+  for (const double level : {-0.5, 0.0, 0.5}) {
+    view.look_from({{0, 0, level}, {0, 0, 1}});
+    const std::vector<int> horizon{view.horizon(0), view.horizon(1), view.horizon(2)};
+    VisibleRegion<double> region(view);
+    EXPECT_EQ(region.set_source(0, view.side(0), corners, horizon, nullptr), level < 0) << level;
+  }
+}
 
 }  // namespace
 }  // namespace exitance
