@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "src/stress/visibility_oracle.h"
+#include "tests/geometry/solids.h"
 
 namespace exitance {
 namespace {
@@ -20,6 +21,16 @@ PointFormFactor ask(const std::vector<Polygon>& polygons, const Vec3& x, const V
   Viewpoint view(soup);
   view.look_from({x, normal, soup.first_facet(0)});
   return view.form_factor({soup.first_facet(static_cast<std::uint32_t>(polygons.size()) - 1), {}});
+}
+
+/// A turn by 3, 4, 5 and a scale by 5, which keep small whole numbers and their halves exact.
+Vec3 turned_by_345(const Vec3& v) {
+  return {3 * v.x - 4 * v.z, 5 * v.y, 4 * v.x + 3 * v.z};
+}
+std::vector<Polygon> turned_by_345(std::vector<Polygon> polygons) {
+  for (Polygon& polygon : polygons)
+    std::ranges::transform(polygon.outer, polygon.outer.begin(), [](const Vec3& v) { return turned_by_345(v); });
+  return polygons;
 }
 
 TEST(Viewpoint, SaysWhichSideOfASourceItSeesAndThatItIsSeenEdgeOn) {
@@ -113,11 +124,7 @@ TEST(Viewpoint, ASourceThatOnlyTouchesTheHorizonIsAway) {
     const Polygon wall{{{2, -1, 0}, {2, -1, -1}, {3, 1, -1}, {3, 1, last}}, {}};
     for (const bool turn : {false, true}) {
       std::vector<Polygon> scene{floor, wall};
-      for (Polygon& polygon : scene) {
-        for (Vec3& v : polygon.outer) {
-          if (turn) v = {3 * v.x - 4 * v.z, 5 * v.y, 4 * v.x + 3 * v.z};
-        }
-      }
+      if (turn) scene = turned_by_345(scene);
       const PointFormFactor seen = ask(scene, {0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}, {});
       EXPECT_EQ(seen.visibility, Visibility::away);
       EXPECT_NE(seen.side, Side::edge_on);
@@ -142,11 +149,7 @@ TEST(Viewpoint, ABoxThatIsLevelWithThePointHidesNothing) {
   const auto seen = [&](double top, bool turn) {
     std::vector<Polygon> scene = box(top);
     scene.push_back(source);
-    for (Polygon& polygon : scene) {
-      for (Vec3& v : polygon.outer) {
-        if (turn) v = {3 * v.x - 4 * v.z, 5 * v.y, 4 * v.x + 3 * v.z};
-      }
-    }
+    if (turn) scene = turned_by_345(scene);
     const PolygonSoup soup(scene);
     Viewpoint view(soup);
     view.look_from({{0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}});
@@ -157,6 +160,128 @@ TEST(Viewpoint, ABoxThatIsLevelWithThePointHidesNothing) {
     EXPECT_EQ(level.visibility, Visibility::open);
     EXPECT_NEAR(level.F, seen(-0.5, turn).F, 2 * level.error);
     EXPECT_LT(seen(0.25, turn).F, level.F - 1e-3);
+  }
+}
+
+// Of a source of which two plates that overlap hide a part each nothing is left; a solid through whose notch all
+// of a source is seen hides nothing.
+TEST(Viewpoint, OpenAndBlockedAreToldOfPartsAndNotches) {
+  const Polygon source{{{-1, -1, 4}, {-1, 1, 4}, {1, 1, 4}, {1, -1, 4}}, {}};
+  const std::vector<Polygon> plates = {{{{-2, -2, 2}, {0.25, -2, 2}, {0.25, 2, 2}, {-2, 2, 2}}, {}},
+                                       {{{-0.25, -2, 2}, {2, -2, 2}, {2, 2, 2}, {-0.25, 2, 2}}, {}},
+                                       source};
+  std::vector<Polygon> notched = prism({{-3, -3}, {3, -3}, {3, 3}, {2, 3}, {2, -2}, {-2, -2}, {-2, 3}, {-3, 3}}, 1, 2);
+  notched.push_back(source);
+  for (const bool turn : {false, true}) {
+    const auto seen = [&](const std::vector<Polygon>& polygons) {
+      const PolygonSoup soup(turn ? turned_by_345(polygons) : polygons);
+      Viewpoint view(soup);
+      view.look_from({{0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}});
+      return view.form_factor({soup.first_facet(static_cast<std::uint32_t>(polygons.size()) - 1), {}});
+    };
+    EXPECT_EQ(seen(plates).visibility, Visibility::blocked);
+    EXPECT_EQ(seen(notched).visibility, Visibility::open);
+  }
+}
+
+// A wall that stands on the floor or reaches below it, seen past a box that stands on the floor and under a shelf that
+// goes through the wall: which lines bound what is seen, where their stretches lie, and that the outline counts each of
+// them once, but of what is level with the point only how many pieces there are.
+TEST(Viewpoint, TheOutlineIsOfTheEdgesThatAreSeen) {
+  const Polygon floor{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {}};
+  const Polygon shelf{{{3, -0.5, 2.5}, {5, -0.5, 2.5}, {5, 0.5, 2.5}, {3, 0.5, 2.5}}, {}};
+  const auto wall = [](double bottom) {  // with a corner in the middle of an edge
+    return Polygon{{{4, -2, bottom}, {4, -2, 5}, {4, 2, 5}, {4, 2, bottom}, {4, 1.5, bottom}}, {}};
+  };
+  const std::vector<Polygon> box = {{{{2, -0.5, 0}, {2, 0.5, 0}, {2.5, 0.5, 0}, {2.5, -0.5, 0}}, {}},
+                                    {{{2, -0.5, 1}, {2.5, -0.5, 1}, {2.5, 0.5, 1}, {2, 0.5, 1}}, {}},
+                                    {{{2, -0.5, 0}, {2.5, -0.5, 0}, {2.5, -0.5, 1}, {2, -0.5, 1}}, {}},
+                                    {{{2, 0.5, 0}, {2, 0.5, 1}, {2.5, 0.5, 1}, {2.5, 0.5, 0}}, {}},
+                                    {{{2, -0.5, 0}, {2, -0.5, 1}, {2, 0.5, 1}, {2, 0.5, 0}}, {}},
+                                    {{{2.5, -0.5, 0}, {2.5, 0.5, 0}, {2.5, 0.5, 1}, {2.5, -0.5, 1}}, {}}};
+  struct Look {
+    double bottom;
+    bool has_box, has_shelf;
+    std::size_t level, other, pieces;
+  };
+  for (const Look& look :
+       {Look{0, false, false, 2, 3, 1}, Look{0, true, false, 3, 6, 2}, Look{-1, false, false, 1, 3, 1},
+        Look{-1, true, false, 2, 6, 2}, Look{1, false, false, 0, 5, 0}, Look{1, true, true, 0, 13, 0}}) {
+    for (const bool turn : {false, true}) {
+      std::vector<Polygon> scene = box;
+      scene.insert(scene.end(), {floor, shelf, wall(look.bottom)});
+      if (turn) scene = turned_by_345(scene);
+      const PolygonSoup soup(scene);
+      ASSERT_EQ(soup.facets().size(), 9u);
+      ASSERT_EQ(soup.shells().size(), 1u);
+      std::vector<std::uint32_t> items;
+      if (look.has_shelf) items.push_back(7);
+      if (look.has_box) items.push_back(9);
+      Viewpoint view(soup);
+      view.look_from({{0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}, 6});
+      ASSERT_GT(view.form_factor({8, {}}, items, 1e-13).F, 0.01);
+      std::size_t level = 0, other = 0;
+      std::uint64_t sum = 0;
+      for (const SeenEdge& edge : view.seen_edges()) {
+        const Vec3 up = turn ? Vec3{-0.8, 0, 0.6} : Vec3{0, 0, 1};
+        const bool is_level = std::fabs(dot(edge.from, up)) < 1e-9 && std::fabs(dot(edge.to, up)) < 1e-9;
+        is_level ? ++level : ++other;
+        if (!is_level) sum += edge.id;
+        // Both ends lie in the plane of the point and the line, and are no less far apart than the wall shows them.
+        const Vec3 normal = (1 / norm(cross(edge.a, edge.b))) * cross(edge.a, edge.b);
+        EXPECT_NEAR(dot(normal, edge.from), 0, 1e-12);
+        EXPECT_NEAR(dot(normal, edge.to), 0, 1e-12);
+        EXPECT_GT(norm(edge.to - edge.from), 0.01);
+      }
+      EXPECT_EQ(level, look.level) << look.bottom << look.has_box << turn;
+      EXPECT_EQ(other, look.other) << look.bottom << look.has_box << turn;
+      EXPECT_EQ(view.outline() - sum, look.pieces) << look.bottom << look.has_box << turn;
+    }
+  }
+}
+
+// A piece's corners stand for points exactly in its facet's plane, to which they drop along the axis that the plane is
+// most across: such a point may be on another side of the horizon than the rounded corner. `on` is an axis as numbered
+// from the one that the plane is across, mirrored or not.
+TEST(Viewpoint, CornersOfPiecesAreAboveTheHorizonWhereTheyDropTo) {
+  for (const int first : {0, 1, 2}) {
+    for (const double mirrored : {1.0, -1.0}) {
+      const auto on = [&](double a, double b, double c) {
+        Vec3 v;
+        v[first] = mirrored * a;
+        v[(first + 1) % 3] = b;
+        v[(first + 2) % 3] = c;
+        return v;
+      };
+      const auto loop = [&](std::vector<Vec3> corners) {
+        if (mirrored < 0) std::ranges::reverse(corners);
+        return corners;
+      };
+      const auto seen = [&](const std::vector<Vec3>& facet, const std::vector<Vec3>& piece, const Vec3& x,
+                            const Vec3& normal) {
+        const PolygonSoup soup(std::vector<Polygon>{{loop(facet), {}}});
+        Viewpoint view(soup);
+        view.look_from({x, normal});
+        return view.form_factor({0, loop(piece)}).visibility;
+      };
+      // The plane a + b / 2 = 4, the horizon a = 3.5.
+      const std::vector<Vec3> slanted{on(4, 0, -2), on(3, 2, -2), on(3, 2, 2), on(4, 0, 2)};
+      const auto of_slanted = [&](double a, double b) {
+        return seen(slanted, {on(a, b, 0), on(3, 2, -1), on(3, 2, 1)}, on(3.5, -3, 0), on(1, 0, 0));
+      };
+      for (const double off : {0x1p-50, 0x1p-45, -0x1p-50, -0x1p-45}) {
+        EXPECT_EQ(of_slanted(3.5 + off, 1), Visibility::away) << first << ' ' << mirrored << ' ' << off;
+      }
+      EXPECT_EQ(of_slanted(3.5 - 0x1p-51, 1 - 0x1p-49), Visibility::open) << first << ' ' << mirrored;
+      EXPECT_EQ(of_slanted(3.5 + 0x1p-51, 1 + 0x1p-49), Visibility::away) << first << ' ' << mirrored;
+      // The plane a = 2, the horizon 2 b = a.
+      const std::vector<Vec3> across{on(2, -2, -2), on(2, 2, -2), on(2, 2, 2), on(2, -2, 2)};
+      for (const double off : {0x1p-50, -0x1p-50}) {
+        EXPECT_EQ(seen(across, {on(2 - off, 1, 0), on(2 - off, 0, 1), on(2 - off, 0, -1)}, {}, on(-1, 2, 0)),
+                  Visibility::away)
+            << first << ' ' << mirrored << ' ' << off;
+      }
+    }
   }
 }
 
@@ -266,16 +391,18 @@ TEST(Viewpoint, AValueThatItsErrorHidesIsFoundByMoreDigits) {
   const PolygonSoup soup(std::vector<Polygon>{sliver});
   Viewpoint view(soup);
   view.look_from({x, normal});
-  double F = 0, error = 0;
-  for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
-    const PointFormFactor part = view.form_factor({f, {}}, 1e-11);
-    F += part.F;
-    error += part.error;
-  }
   const auto truth = static_cast<double>(oracle_form_factor({x, normal, sliver, {}}).F);
   ASSERT_GT(truth, 1e-12);
-  EXPECT_NEAR(F, truth, 6e-13);
-  EXPECT_LE(std::fabs(F - truth), error);
+  for (const double tolerance : {1e-11, 1e-10}) {
+    double F = 0, error = 0;
+    for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
+      const PointFormFactor part = view.form_factor({f, {}}, tolerance);
+      F += part.F;
+      error += part.error;
+    }
+    EXPECT_NEAR(F, truth, 6e-13) << tolerance;
+    EXPECT_LE(std::fabs(F - truth), error) << tolerance;
+  }
 }
 
 // Of the two sides of a sheet a point sees one, the front of the side that is turned to it.
