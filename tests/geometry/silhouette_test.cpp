@@ -102,6 +102,106 @@ TEST(Silhouette, AgreesWithTheOracle) {
   EXPECT_GT(partial, asked / 8);
 }
 
+// Edges in one plane through the point, each from one direction of it to another: of all pairs, in planes across every
+// axis and none, those coincide that turn the same way and share an angle.
+TEST(Silhouette, EdgesCoincideThatRunTheSameWayOverOneAnother) {
+  constexpr std::array<std::array<int, 2>, 7> kDirections{{{5, -1}, {4, 1}, {3, 2}, {2, 3}, {1, 4}, {-1, 5}, {-3, 4}}};
+  struct Span {
+    std::size_t from, to;
+  };
+  for (const auto& [u, v] : {std::pair(Vec3{1, 0, 0}, Vec3{0, 1, 0}), std::pair(Vec3{0, 1, 0}, Vec3{0, 0, 1}),
+                             std::pair(Vec3{0, 0, 1}, Vec3{1, 0, 0}), std::pair(Vec3{2, 3, 6}, Vec3{-6, -2, 3})}) {
+    const Vec3 x{3, -2, 1};
+    const auto at = [&](std::size_t direction, int far) {
+      const auto& [p, q] = kDirections[direction];
+      return x + double(far * p) * u + double(far * q) * v;
+    };
+    std::vector<Span> spans;
+    for (std::size_t from = 0; from < 7; ++from) {
+      for (std::size_t to = 0; to < 7; ++to) {
+        if (from != to) spans.push_back({from, to});
+      }
+    }
+    for (const Span& a : spans) {
+      for (const Span& b : spans) {
+        const Vec3 a0 = at(a.from, 2), a1 = at(a.to, 1), b0 = at(b.from, 1), b1 = at(b.to, 3);
+        const ViewPlane side_a{ViewPlane::Kind::edge, 1, &a0, &a1, nullptr},
+            side_b{ViewPlane::Kind::edge, 1, &b0, &b1, nullptr};
+        const bool same_way = (a.from < a.to) == (b.from < b.to);
+        const bool overlap = std::max(std::min(a.from, a.to), std::min(b.from, b.to)) <
+                             std::min(std::max(a.from, a.to), std::max(b.from, b.to));
+        EXPECT_EQ(coincide(x, side_a, side_b), same_way && overlap)
+            << a.from << a.to << b.from << b.to << " in the plane of " << u.x << u.y << u.z;
+      }
+    }
+  }
+}
+
+// Stairs from a point in line with their steps, from which one step's edge stands before the next one's: up to where
+// the one is seen over the other, and beside that line, they are of use.
+TEST(Silhouette, IsNotUsableWhereEdgesCoincide) {
+  const Faces stairs = prism({{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 2}, {1, 2}, {1, 1}, {0, 1}}, 3, 4);
+  struct Look {
+    Vec3 from;
+    bool usable;
+  };
+  for (const Look& look : {Look{{-1, 0, 2.5}, false}, Look{{-2, -1, 2.75}, false}, Look{{-1, 0, 0}, true},
+                           Look{{-1, 0.125, 2.5}, true}, Look{{-2, -1.125, 2.75}, true}}) {
+    for (const bool turn : {false, true}) {
+      const auto placed = [&](const Vec3& v) { return turn ? Vec3{3 * v.x - 4 * v.z, 5 * v.y, 4 * v.x + 3 * v.z} : v; };
+      Faces faces = stairs;
+      for (Polygon& face : faces) std::ranges::transform(face.outer, face.outer.begin(), placed);
+      const PolygonSoup soup(faces, std::vector<Role>(faces.size(), Role::solid_face));
+      ASSERT_EQ(soup.shells().size(), 1u);
+      View view(soup);
+      view.look_from({placed(look.from), placed({0, 0, 1})});
+      ViewCones<double> cones(view);
+      EXPECT_EQ(cones.silhouette_of(0).is_usable, look.usable) << look.from.x << ' ' << look.from.y << ' ' << turn;
+    }
+  }
+}
+
+// Sheets that reach below the horizon, before and behind a solid above it.
+TEST(Silhouette, CoversEdgesThatReachBelowTheHorizon) {
+  std::size_t partial = 0;
+  for (const Placement& place : placements("silhouettes and sheets")) {
+    Random random("silhouettes and sheets " + place.name);
+    for (int k = 0; k < 4; ++k) {
+      const Question q = question(random, 1);
+      const auto whole = [&](int low, int high) { return double(random.whole(low, high)); };
+      const Polygon sheet{{{whole(-4, 0), whole(-4, 0), whole(2, 7)},
+                           {whole(1, 4), whole(-4, 4), whole(2, 7)},
+                           {whole(-4, 4), whole(1, 4), whole(-9, -4)}},
+                          {}};
+      std::vector<Obstacle> occluders{{{}, true}, {{place(sheet)}, false}};
+      for (const Polygon& face : q.solids[0]) occluders[0].faces.push_back(place(face));
+      std::vector<Polygon> polygons = occluders[0].faces;
+      std::vector<Role> roles(polygons.size(), Role::solid_face);
+      polygons.insert(polygons.end(), {place(sheet), place(q.source)});
+      roles.insert(roles.end(), {Role::sheet, Role::patch});
+      if (!std::ranges::all_of(polygons, [](const Polygon& p) { return find_defect(p) == PolygonDefect::none; }))
+        continue;
+      const PolygonSoup soup(polygons, roles);
+      const Vec3 point = place(q.point), normal = place.normal(q.normal);
+      Viewpoint viewpoint(soup);
+      viewpoint.look_from({point, normal});
+      double F = 0, error = 0;
+      const auto source = static_cast<std::uint32_t>(polygons.size()) - 1;
+      for (std::uint32_t f = soup.first_facet(source); f < soup.first_facet(source + 1); ++f) {
+        const PointFormFactor answer = viewpoint.form_factor({f, {}});
+        if (answer.side != Side::front) continue;
+        F += answer.F;
+        error += answer.error;
+        partial += answer.visibility == Visibility::partial;
+      }
+      const auto truth = static_cast<double>(oracle_form_factor({point, normal, polygons[source], occluders}).F);
+      EXPECT_LE(std::fabs(F - truth), error + 1e-17) << place.name << ", question " << k << ": " << F << ", " << truth;
+      EXPECT_LE(error, 1e-11) << place.name << ", question " << k;
+    }
+  }
+  EXPECT_GT(partial, 8u);
+}
+
 // From each point as if it were the first that is looked from.
 TEST(Silhouette, IsFoundAnewFromEachPoint) {
   const Polygon source{{{-4, -4, 9}, {-4, 4, 9}, {4, 4, 9}, {4, -4, 9}}, {}};
