@@ -102,6 +102,37 @@ TEST(Silhouette, AgreesWithTheOracle) {
   EXPECT_GT(partial, asked / 8);
 }
 
+/// What a point sees of a source behind a solid and sheets, and what the oracle says.
+struct Comparison {
+  double F = 0, error = 0, truth = 0;
+  bool is_partial = false;
+};
+Comparison compare(const Vec3& point, const Vec3& normal, const Faces& solid, const Faces& sheets,
+                   const Polygon& source) {
+  std::vector<Polygon> polygons = solid;
+  polygons.insert(polygons.end(), sheets.begin(), sheets.end());
+  polygons.push_back(source);
+  std::vector<Role> roles(solid.size(), Role::solid_face);
+  roles.resize(solid.size() + sheets.size(), Role::sheet);
+  roles.push_back(Role::patch);
+  const PolygonSoup soup(polygons, roles);
+  Viewpoint view(soup);
+  view.look_from({point, normal});
+  Comparison c;
+  const auto last = static_cast<std::uint32_t>(polygons.size()) - 1;
+  for (std::uint32_t f = soup.first_facet(last); f < soup.first_facet(last + 1); ++f) {
+    const PointFormFactor answer = view.form_factor({f, {}});
+    if (answer.side != Side::front) continue;
+    c.F += answer.F;
+    c.error += answer.error;
+    c.is_partial = c.is_partial || answer.visibility == Visibility::partial;
+  }
+  std::vector<Obstacle> occluders{{solid, true}};
+  for (const Polygon& sheet : sheets) occluders.push_back({{sheet}, false});
+  c.truth = static_cast<double>(oracle_form_factor({point, normal, source, occluders}).F);
+  return c;
+}
+
 // Edges in one plane through the point, each from one direction of it to another: of all pairs, in planes across every
 // axis and none, those coincide that turn the same way and share an angle.
 TEST(Silhouette, EdgesCoincideThatRunTheSameWayOverOneAnother) {
@@ -173,33 +204,71 @@ TEST(Silhouette, CoversEdgesThatReachBelowTheHorizon) {
                            {whole(1, 4), whole(-4, 4), whole(2, 7)},
                            {whole(-4, 4), whole(1, 4), whole(-9, -4)}},
                           {}};
-      std::vector<Obstacle> occluders{{{}, true}, {{place(sheet)}, false}};
-      for (const Polygon& face : q.solids[0]) occluders[0].faces.push_back(place(face));
-      std::vector<Polygon> polygons = occluders[0].faces;
-      std::vector<Role> roles(polygons.size(), Role::solid_face);
-      polygons.insert(polygons.end(), {place(sheet), place(q.source)});
-      roles.insert(roles.end(), {Role::sheet, Role::patch});
-      if (!std::ranges::all_of(polygons, [](const Polygon& p) { return find_defect(p) == PolygonDefect::none; }))
-        continue;
-      const PolygonSoup soup(polygons, roles);
-      const Vec3 point = place(q.point), normal = place.normal(q.normal);
-      Viewpoint viewpoint(soup);
-      viewpoint.look_from({point, normal});
-      double F = 0, error = 0;
-      const auto source = static_cast<std::uint32_t>(polygons.size()) - 1;
-      for (std::uint32_t f = soup.first_facet(source); f < soup.first_facet(source + 1); ++f) {
-        const PointFormFactor answer = viewpoint.form_factor({f, {}});
-        if (answer.side != Side::front) continue;
-        F += answer.F;
-        error += answer.error;
-        partial += answer.visibility == Visibility::partial;
-      }
-      const auto truth = static_cast<double>(oracle_form_factor({point, normal, polygons[source], occluders}).F);
-      EXPECT_LE(std::fabs(F - truth), error + 1e-17) << place.name << ", question " << k << ": " << F << ", " << truth;
-      EXPECT_LE(error, 1e-11) << place.name << ", question " << k;
+      const auto placed = [&](Faces faces) {
+        for (Polygon& face : faces) face = place(face);
+        return faces;
+      };
+      const Faces faces = placed(q.solids[0]), sheets = placed({sheet}), source = placed({q.source});
+      const auto is_sound = [](const Polygon& p) { return find_defect(p) == PolygonDefect::none; };
+      if (!std::ranges::all_of(faces, is_sound) || !is_sound(sheets[0]) || !is_sound(source[0])) continue;
+      const Comparison c = compare(place(q.point), place.normal(q.normal), faces, sheets, source[0]);
+      EXPECT_LE(std::fabs(c.F - c.truth), c.error + 1e-17) << place.name << ", question " << k;
+      EXPECT_LE(c.error, 1e-11) << place.name << ", question " << k;
+      partial += c.is_partial;
     }
   }
   EXPECT_GT(partial, 8u);
+}
+
+// An edge starts so little below the horizon that its height comes out as positive, and what lies half way round from
+// there is in a solid that is above the horizon by less than that: the way along the edge must start at its other end.
+TEST(Silhouette, AnEdgeIsFollowedFromTheEndThatIsAboveTheHorizon) {
+  const Placement tilted{"tilted", {1, -1, 0}, {1, 1, -2}, {1, 1, 1}, {}};
+  Faces solid = prism({{8, -2}, {12, -2}, {12, 0}, {10, 0}, {10, 2}, {8, 2}}, 0, 4);
+  for (Polygon& face : solid) face = tilted(face);
+  const Vec3 x{0, -(0x1p-53 + 0x1p-60), 0}, end{-1, 1, -(0x1p-53 + 0x1p-55)};
+  const Polygon source = tilted(Polygon{{{-100, -100, 8}, {-100, 100, 8}, {100, 100, 8}, {100, -100, 8}}, {}});
+  for (const bool turned_over : {false, true}) {
+    Polygon sheet{{end, tilted({-1, -1, 2}), tilted({-1, 1, 2})}, {}};
+    if (turned_over) std::ranges::reverse(sheet.outer);
+    const Comparison c = compare(x, {1, 1, 1}, solid, {sheet}, source);
+    EXPECT_LE(std::fabs(c.F - c.truth), c.error + 1e-17) << c.F << ", " << c.truth;
+    EXPECT_LE(c.error, 1e-13);
+    EXPECT_LT(c.truth, compare(x, {1, 1, 1}, solid, {}, source).truth - 1e-3);
+  }
+}
+
+// Edges of a solid in line with sides of the source, the solid within and beyond them, to all sides.
+TEST(Silhouette, EdgesMayBeInLineWithTheSources) {
+  for (int turns = 0; turns < 4; ++turns) {
+    for (const bool turn : {false, true}) {
+      const auto placed = [&](Vec3 v) {
+        for (int k = 0; k < turns; ++k) v = {-v.y, v.x, v.z};
+        return turn ? Vec3{3 * v.x - 4 * v.z, 5 * v.y, 4 * v.x + 3 * v.z} : v;
+      };
+      const auto all_placed = [&](Faces faces) {
+        for (Polygon& face : faces) std::ranges::transform(face.outer, face.outer.begin(), placed);
+        return faces;
+      };
+      // Its shadow at 4 is twice as large.
+      const Faces faces = all_placed(prism({{-1, -1}, {2, -1}, {2, 1}, {1, 1}, {1, 2}, {-1, 2}}, 2, 3));
+      for (const auto& [x0, y0, x1, y1] : {std::array{-5, -5, 4, 5},
+                                           {-5, -5, 2, 5},
+                                           {2, -5, 6, 5},
+                                           {-5, -5, 6, 2},
+                                           {-5, 2, 6, 6},
+                                           {-2, -2, 6, 6},
+                                           {-2, -2, 4, 4},
+                                           {2, 2, 6, 6}}) {
+        const Vec3 a{double(x0), double(y0), 4}, c{double(x1), double(y1), 4};
+        const Faces source = all_placed({{{a, {a.x, c.y, 4}, c, {c.x, a.y, 4}}, {}}});
+        const Comparison of = compare({0, 0, 0}, placed({0, 0, 1}), faces, {}, source[0]);
+        EXPECT_LE(std::fabs(of.F - of.truth), of.error + 1e-17)
+            << turns << turn << ": " << x0 << ' ' << y0 << ' ' << x1 << ' ' << y1 << ": " << of.F << ", " << of.truth;
+        EXPECT_LE(of.error, 1e-13);
+      }
+    }
+  }
 }
 
 // From each point as if it were the first that is looked from.

@@ -163,14 +163,18 @@ TEST(Viewpoint, ABoxThatIsLevelWithThePointHidesNothing) {
   }
 }
 
-// Of a source of which two plates that overlap hide a part each nothing is left; a solid through whose notch all
-// of a source is seen hides nothing.
+// Of a source of which two plates that overlap hide a part each nothing is left; a solid through whose notch all of a
+// source is seen, next to its walls, hides nothing.
 TEST(Viewpoint, OpenAndBlockedAreToldOfPartsAndNotches) {
   const Polygon source{{{-1, -1, 4}, {-1, 1, 4}, {1, 1, 4}, {1, -1, 4}}, {}};
   const std::vector<Polygon> plates = {{{{-2, -2, 2}, {0.25, -2, 2}, {0.25, 2, 2}, {-2, 2, 2}}, {}},
                                        {{{-0.25, -2, 2}, {2, -2, 2}, {2, 2, 2}, {-0.25, 2, 2}}, {}},
                                        source};
-  std::vector<Polygon> notched = prism({{-3, -3}, {3, -3}, {3, 3}, {2, 3}, {2, -2}, {-2, -2}, {-2, 3}, {-3, 3}}, 1, 2);
+  std::vector<Polygon> notched =
+      prism({{-24, -24}, {24, -24}, {24, 24}, {5, 24}, {5, -5}, {-5, -5}, {-5, 24}, {-24, 24}}, 8, 16);
+  for (Polygon& face : notched) {
+    for (Vec3& v : face.outer) v = 0.125 * v;
+  }
   notched.push_back(source);
   for (const bool turn : {false, true}) {
     const auto seen = [&](const std::vector<Polygon>& polygons) {
