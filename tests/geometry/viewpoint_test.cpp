@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "src/stress/visibility_oracle.h"
-#include "tests/geometry/solids.h"
 
 namespace exitance {
 namespace {
@@ -163,29 +162,54 @@ TEST(Viewpoint, ABoxThatIsLevelWithThePointHidesNothing) {
   }
 }
 
-// Of a source of which two plates that overlap hide a part each nothing is left; a solid through whose notch all of a
-// source is seen, next to its walls, hides nothing.
-TEST(Viewpoint, OpenAndBlockedAreToldOfPartsAndNotches) {
-  const Polygon source{{{-1, -1, 4}, {-1, 1, 4}, {1, 1, 4}, {1, -1, 4}}, {}};
-  const std::vector<Polygon> plates = {{{{-2, -2, 2}, {0.25, -2, 2}, {0.25, 2, 2}, {-2, 2, 2}}, {}},
-                                       {{{-0.25, -2, 2}, {2, -2, 2}, {2, 2, 2}, {-0.25, 2, 2}}, {}},
-                                       source};
-  std::vector<Polygon> notched =
-      prism({{-24, -24}, {24, -24}, {24, 24}, {5, 24}, {5, -5}, {-5, -5}, {-5, 24}, {-24, 24}}, 8, 16);
-  for (Polygon& face : notched) {
-    for (Vec3& v : face.outer) v = 0.125 * v;
-  }
-  notched.push_back(source);
+// Of a source of which two plates that overlap hide a part each nothing is left.
+TEST(Viewpoint, WhatIsHiddenInPartsIsBlocked) {
+  const std::vector<Polygon> polygons = {{{{-2, -2, 2}, {0.25, -2, 2}, {0.25, 2, 2}, {-2, 2, 2}}, {}},
+                                         {{{-0.25, -2, 2}, {2, -2, 2}, {2, 2, 2}, {-0.25, 2, 2}}, {}},
+                                         {{{-1, -1, 4}, {-1, 1, 4}, {1, 1, 4}, {1, -1, 4}}, {}}};
   for (const bool turn : {false, true}) {
-    const auto seen = [&](const std::vector<Polygon>& polygons) {
-      const PolygonSoup soup(turn ? turned_by_345(polygons) : polygons);
-      Viewpoint view(soup);
-      view.look_from({{0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}});
-      return view.form_factor({soup.first_facet(static_cast<std::uint32_t>(polygons.size()) - 1), {}});
-    };
-    EXPECT_EQ(seen(plates).visibility, Visibility::blocked);
-    EXPECT_EQ(seen(notched).visibility, Visibility::open);
+    const PolygonSoup soup(turn ? turned_by_345(polygons) : polygons);
+    Viewpoint view(soup);
+    view.look_from({{0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}});
+    const PointFormFactor seen = view.form_factor({2, {}});
+    EXPECT_EQ(seen.visibility, Visibility::blocked);
+    EXPECT_EQ(seen.F, 0);
   }
+}
+
+// What is seen of a square past a plate, of which a strip stands over its edge: the boundary runs so that it encloses
+// the visible area to its left, seen from the point, whichever side the square shows; of nothing there is no boundary.
+TEST(Viewpoint, TheVisibleRegionLiesToTheLeftOfItsBoundary) {
+  const Polygon square{{{-2, -2, 2}, {-2, 2, 2}, {2, 2, 2}, {2, -2, 2}}, {}};
+  const Polygon plate{{{-0.5, -0.25, 1}, {2, -0.25, 1}, {2, 0.5, 1}, {-0.5, 0.5, 1}}, {}};  // hides 3 by 1.5
+  for (const bool from_above : {false, true}) {
+    for (const bool turn : {false, true}) {
+      std::vector<Polygon> scene{square, plate};
+      if (from_above) {
+        for (Vec3& v : scene[1].outer) v.z = 3;
+      }
+      if (turn) scene = turned_by_345(scene);
+      const PolygonSoup soup(scene, std::vector<Role>{Role::patch, Role::sheet});
+      Viewpoint view(soup);
+      const auto placed = [&](const Vec3& v) { return turn ? turned_by_345(v) : v; };
+      const Vec3 x = placed({0, 0, from_above ? 4.0 : 0.0}), up = placed({0, 0, 1});
+      view.look_from({x, (from_above ? -1.0 : 1.0) * up});
+      Vec3 twice;
+      for (const BoundaryPiece& piece : view.visible_region({0, {}})) {
+        EXPECT_NE(piece.from, piece.to);
+        twice = twice + cross(piece.from - x, piece.to - x);
+      }
+      const double scale = turn ? 25 : 1, towards = (from_above ? 1 : -1) * dot(up, twice) / (2 * norm(up));
+      EXPECT_NEAR(towards, scale * (16 - 4.5), scale * 1e-12) << from_above << turn;
+    }
+  }
+  const std::vector<Polygon> hidden = {square,
+                                       {{{-2, -2, 1}, {0, -2, 1}, {0, 2, 1}, {-2, 2, 1}}, {}},
+                                       {{{0, -2, 1}, {2, -2, 1}, {2, 2, 1}, {0, 2, 1}}, {}}};
+  const PolygonSoup soup(hidden);
+  Viewpoint view(soup);
+  view.look_from({{0.125, 0.25, 0}, {0, 0, 1}});
+  EXPECT_TRUE(view.visible_region({0, {}}).empty());
 }
 
 // A wall that stands on the floor or reaches below it, seen past a box that stands on the floor and under a shelf that
