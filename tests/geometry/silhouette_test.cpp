@@ -261,6 +261,31 @@ TEST(Silhouette, AnEndIsAboveTheHorizonByExactSigns) {
     EXPECT_LE(std::fabs(c.F - c.truth), c.error + 1e-17) << c.F << ", " << c.truth;
     EXPECT_LE(c.error, 1e-13);
   }
+
+  // Of that edge the solid covers what is above its own bottom.
+  std::vector<Polygon> polygons = solid;
+  polygons.push_back({{tilted({2, -1, 0}), end, tilted({4, 0, 1})}, {}});
+  std::vector<Role> roles(solid.size(), Role::solid_face);
+  roles.push_back(Role::sheet);
+  const PolygonSoup soup(polygons, roles);
+  View view(soup);
+  view.look_from({x, {1, 1, 1}});
+  ViewCones<double> cones(view);
+  ASSERT_TRUE(cones.silhouette_of(0).is_usable);
+  const Cone<double>& cone = cones.of_facet(static_cast<std::uint32_t>(soup.facets().size()) - 1);
+  const auto edge = std::ranges::find_if(cone.sides, [](const auto& side) { return side.from == 0; });
+  ASSERT_TRUE(edge != cone.sides.end() && edge->to == 1);
+  LayersOverEdge<double> layers;
+  std::vector<Stretch<double>> covered;
+  StageCounts counts;
+  EXPECT_FALSE(layers.find(cone, *edge, cones.silhouette_of(0), Tie::silhouette_moves,
+                           {{x, {1, 1, 1}, {}}, counts, kFinestPerAngle}, covered));
+  ASSERT_EQ(covered.size(), 1u);
+  EXPECT_EQ(covered[0].lo, 0);
+  // Heights times 2^53 at both ends; that of the bottom is 1 − 2^-7 at any distance.
+  const double from = 1 - 0x1p-7, to = from - 4;
+  EXPECT_GT(covered[0].hi, 0.5 * from / (from - to));
+  EXPECT_LT(covered[0].hi, from / (from - to));
 }
 
 // Edges of a solid in line with sides of the source, the solid within and beyond them, to all sides.

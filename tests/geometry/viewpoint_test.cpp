@@ -433,6 +433,35 @@ TEST(Viewpoint, AValueThatItsErrorHidesIsFoundByMoreDigits) {
   }
 }
 
+// A strip above the horizon so low that its form factor is just what its error hides, or just not: what is given as 0
+// is wrong by no more than its error there, either.
+TEST(Viewpoint, TheErrorHoldsWhereItJustHidesTheValue) {
+  for (int k = 0; k < 24; ++k) {
+    const Vec3 x{0.1 + 0.01 * k, 0.2, 0}, normal{0, 0, 1};
+    const auto strip = [](double height) {
+      return Polygon{{{1, -1, height}, {1, 1, height}, {1, 1, 0}, {1, -1, 0}}, {}};
+    };
+    const auto seen = [&](double height) {
+      const PolygonSoup soup(std::vector<Polygon>{strip(height)});
+      Viewpoint view(soup);
+      view.look_from({x, normal});
+      return view.form_factor({0, {}}, 1);
+    };
+    double low = 1e-8, high = 1e-6;
+    ASSERT_EQ(seen(low).F, 0);
+    ASSERT_GT(seen(high).F, 0);
+    for (int step = 0; step < 48; ++step) {
+      const double middle = 0.5 * (low + high);
+      (seen(middle).F > 0 ? high : low) = middle;
+    }
+    for (const double height : {low, high}) {
+      const PointFormFactor answer = seen(height);
+      const auto truth = static_cast<double>(oracle_form_factor({x, normal, strip(height), {}}).F);
+      EXPECT_LE(std::fabs(answer.F - truth), answer.error) << k << ": " << height;
+    }
+  }
+}
+
 // Of the two sides of a sheet a point sees one, the front of the side that is turned to it.
 TEST(Viewpoint, SheetsAreSeenFromOneSide) {
   const std::vector<Polygon> polygons = {{{{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}}, {}},
