@@ -47,25 +47,26 @@ double seconds_since(Clock::time_point start) {
 
 /// Which methods look at an option. What is not here has a meaning for all.
 using Methods = std::vector<std::string>;
-const Methods kByShots = {"scratch", "restart", "redistribute"}, kByLinks = {"rebuild", "direct", "hvt", "hvt-peu"};
-const std::vector<std::pair<const char*, Methods>> kMethodsOfOptions = {
-    {"--strategy", {"restart", "redistribute"}},
-    {"--threshold", {"restart", "redistribute"}},
-    {"--importance", {"redistribute"}},
-    {"--importance-points", {"redistribute"}},
-    {"--object-terms", {"redistribute"}},
-    {"--no-log", {"restart", "redistribute"}},
-    {"--budget-shots", kByShots},
-    {"--budget-ms", {"scratch", "restart", "redistribute", "direct", "hvt", "hvt-peu"}},
-    {"--replay", kByShots},
-    {"--references", kByShots},
-    {"--elements", kByShots},
-    {"--save-every", kByShots},
-    {"--eps", kByLinks},
-    {"--eps1", kByLinks},
-    {"--min-area", kByLinks},
-    {"--link-points", kByLinks},
-    {"--b-eps", {"hvt-peu"}}};
+const Methods kByShots = {"scratch", "restart", "redistribute"}, kByLinks = {"rebuild", "direct", "hvt", "hvt-peu"},
+              kButRebuild = {"scratch", "restart", "redistribute", "direct", "hvt", "hvt-peu"};
+const std::vector<std::pair<const char*, Methods>> kMethodsOfOptions = {{"--strategy", {"restart", "redistribute"}},
+                                                                        {"--threshold", {"restart", "redistribute"}},
+                                                                        {"--importance", {"redistribute"}},
+                                                                        {"--importance-points", {"redistribute"}},
+                                                                        {"--object-terms", {"redistribute"}},
+                                                                        {"--no-log", {"restart", "redistribute"}},
+                                                                        {"--budget-shots", kByShots},
+                                                                        {"--budget-ms", kButRebuild},
+                                                                        {"--work-off", kButRebuild},
+                                                                        {"--replay", kByShots},
+                                                                        {"--references", kByShots},
+                                                                        {"--elements", kByShots},
+                                                                        {"--save-every", kByShots},
+                                                                        {"--eps", kByLinks},
+                                                                        {"--eps1", {"direct", "hvt", "hvt-peu"}},
+                                                                        {"--min-area", kByLinks},
+                                                                        {"--link-points", kByLinks},
+                                                                        {"--b-eps", {"hvt-peu"}}};
 
 class Dynamic {
  public:
@@ -103,7 +104,7 @@ class Dynamic {
     verb.add_option("--budget-shots", budget_shots_, "Most shots a frame after the first; 0: none")
         ->check(whole_number_between(0));
     verb.add_option("--budget-ms", budget_ms_,
-                    "Milliseconds of work a frame after the first, beside its edits themselves; 0: none")
+                    "Milliseconds of work a frame after the first, by shots beside its edits themselves; 0: none")
         ->check(number_between(0));
     verb.add_option("--replay", replay_, "frames.json of an earlier run whose numbers of shots to repeat");
     verb.add_flag(
@@ -118,9 +119,10 @@ class Dynamic {
                     "File (.h5) that keeps the converged references, for other runs of the same frames")
         ->excludes(no_reference);
     memory_limit_.add_to(verb);
-    verb.add_flag("!--no-images", images_, "Leave out pictures and VTP files");
+    CLI::Option* no_images = verb.add_flag("!--no-images", images_, "Leave out pictures and VTP files");
     verb.add_option("--image-size", image_size_, "Width and height of the pictures in pixels")
         ->check(whole_number_between(1, 8192))
+        ->excludes(no_images)
         ->capture_default_str();
     patch_size_ = verb.add_option("--patch-size", options_.mesh.patch_size, "Longest edge of a patch [m]")
                       ->check(number_between(0));
@@ -145,7 +147,9 @@ class Dynamic {
         "elements should have: where those that change most go dark, as in a new shadow, error_worst_1_percent can\n"
         "exceed 1. error_bound is null while a change is in the log and once --no-log has forgotten one: finished "
         "then\n"
-        "says that nothing is left to do, not that B is right. seconds are wall clock, edits included, and so are\n"
+        "says that nothing is left to do, not that B is right; by links, that all links were looked at and their "
+        "exchange\n"
+        "of energy reached the tolerance. seconds are wall clock, edits included, and so are\n"
         "thread_seconds, summed over threads; cpu_seconds are of the processor. left_undone and\n"
         "left_undone_worst_1_percent of hvt-peu: the same errors if all that links bring which --b-eps left as they "
         "were\n"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 
 #include "src/cli/console.h"
@@ -16,6 +17,12 @@ void warn_of_trespass(const std::string& path, const std::map<std::uint32_t, std
     for (const std::string& warning : find_trespass(scene, soup, facets, object))
       print_warning(fmt::format("{}:{}: {}", path, line, warning));
   }
+}
+
+std::string in_words(const std::optional<ConvergenceError>& error) {
+  const auto number = [](double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-"; };
+  return error ? fmt::format("error {}  of the 1 % {}", number(error->all), number(error->worst_1_percent))
+               : "error -  of the 1 % -";
 }
 
 void write_frame(const std::filesystem::path& folder, const DynamicScene& scene, const Frame& frame,

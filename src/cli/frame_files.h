@@ -14,6 +14,7 @@
 #include "src/output/image.h"
 #include "src/scene/scene_file.h"
 #include "src/scene/trespass.h"
+#include "src/solve/convergence_error.h"
 
 namespace exitance {
 
@@ -46,6 +47,10 @@ struct Frame {
 /// object.
 void warn_of_trespass(const std::string& path, const std::map<std::uint32_t, std::uint32_t>& lines,
                       const EditedScene& scene, const PolygonSoup& soup, std::span<const FacetRange> facets);
+
+/// "error 0.01  of the 1 % 0.2", for a summary; a dash where there is none: no reference, or one that is dark
+/// throughout.
+std::string in_words(const std::optional<ConvergenceError>& error);
 
 /// Writes frame_NNN.png, as `picture` draws it by the scene's camera path, its camera or one that shows all of it, and
 /// frame_NNN.vtp with B. Throws what write_png and write_vtp throw.

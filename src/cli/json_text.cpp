@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <string_view>
 #include <vector>
 
 #include "src/scene/input_error.h"
+#include "src/scene/text_cursor.h"
 
 namespace exitance {
 namespace {
@@ -140,13 +139,7 @@ std::string reason(const std::string& what) {
 }  // namespace
 
 nlohmann::json read_json(const std::string& path) {
-  std::error_code ignored;
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path, ignored)) {
-    throw InputError(path, 0, "cannot be read; give the name of an existing JSON file");
-  }
-  const std::string text =
-      without_words_for_non_finite({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, path);
+  const std::string text = without_words_for_non_finite(read_bytes(path), path);
   Builder builder;
   if (!WideJson::sax_parse(text, &builder)) {
     throw InputError(path, line_of(text, builder.error_position()), "is not JSON: " + reason(builder.error()));

@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 
+#include "src/cli/progress_display.h"
 #include "src/cli/stations.h"
 #include "src/links/hierarchical_solution.h"
 #include "src/output/image.h"
@@ -35,15 +36,21 @@ class Frames {
 
   LinksEnd follow() {
     const std::vector<Station> stations = stations_of(given_.events);
+    const auto show_progress = [&](std::size_t frame) {
+      display_.show(static_cast<double>(frame) / static_cast<double>(stations.size()), "frames");
+    };
+    show_progress(0);
     const LinkUpdate built = links_.build(interruption(false));
     add(stations.front(), built);
     bool left = false;  // something, by the last update
     stopped_ = stopped_ || built.stopped;
     for (std::size_t k = 1; k < stations.size() && !(options_.stop && options_.stop()); ++k) {
+      show_progress(k);
       std::vector<Edit> edits;
       for (std::size_t e = stations[k].first; e < stations[k].last; ++e) edits.push_back(given_.events[e].edit);
       const LinkUpdate update = links_.update(edits, options_.method, interruption());
       const Obstacles& obstacles = links_.obstacles();
+      display_.clear();
       warn_of_trespass(options_.path, lines_of_edits(given_, stations[k]), links_.scene(), obstacles.soup(),
                        obstacles.facets());
       add(stations[k], update);
@@ -104,6 +111,7 @@ class Frames {
     frame["links_affected"] = update.work.links_affected;
     frame["skipped"] = update.work.skipped;
     frame["pairs_left"] = update.pairs_left;
+    frame["finished"] = !update.stopped && update.pairs_left == 0 && update.exchange.converged;
     frame["refined"] = update.work.refined;
     frame["unrefined"] = update.work.unrefined;
     frame["form_factors"] = sight.form_factors;
@@ -131,9 +139,8 @@ class Frames {
     frame["unit"] = given_.scene.unit;
     if (options_.images) draw(station.time, elements);
     result_.summary += fmt::format(
-        "frame {:3}  {:>9.4f} s  {:7} of {} links  error {}  of the 1 % {}  {}{}\n", result_.frames.size(),
-        update.seconds, update.work.links_updated, counts.links(), error ? fmt::format("{:.3g}", error->all) : "-",
-        error ? fmt::format("{:.3g}", error->worst_1_percent) : "-",
+        "frame {:3}  {:>9.4f} s  {:7} of {} links  {}  {}{}\n", result_.frames.size(), update.seconds,
+        update.work.links_updated, counts.links(), in_words(error),
         left.all > 0 ? fmt::format("left undone {:.2g}, of the 1 % {:.2g}  ", left.all, left.worst_1_percent) : "",
         fmt::join(edits, ", "));
     result_.frames.push_back(std::move(frame));
@@ -170,6 +177,7 @@ class Frames {
   const LinkFrameOptions& options_;
   std::filesystem::path folder_;
   LinkedRadiosity links_;
+  ProgressDisplay display_;
   std::vector<std::uint8_t> moves_;
   std::string name_;
   std::vector<double> reference_before_;

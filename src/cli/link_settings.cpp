@@ -20,8 +20,6 @@ void LinkSettings::add_to(CLI::App& verb) {
                                       "Of links: refined while B F, what they may bring to any point, is above this "
                                       "share of the brightest E; as the scene says unless given, or 0.005")
                           ->check(number_between(0)));
-  of_links_.push_back(
-      verb.add_option("--eps1", eps1_, "Un-refined below this; half of --eps unless given")->check(number_between(0)));
   of_links_.push_back(verb.add_option("--min-area", smallest_area_,
                                       "No sub-patch is smaller, about [m^2]; as the scene says unless given, or a "
                                       "6,000th of the area of all patches")
@@ -42,6 +40,8 @@ void LinkSettings::add_clusters_to(CLI::App& verb) {
 }
 
 void LinkSettings::add_update_to(CLI::App& verb) {
+  of_links_.push_back(
+      verb.add_option("--eps1", eps1_, "Un-refined below this; half of --eps unless given")->check(number_between(0)));
   of_links_.push_back(verb.add_option("--b-eps", B_eps_,
                                       "Of hvt-peu: links that could not change by more than this share of the "
                                       "brightest E are left as they are; as the scene says unless given, or 0.0001")

@@ -13,11 +13,11 @@ namespace exitance {
 
 class LinkSettings {
  public:
-  /// Adds --eps, --eps1, --min-area and --link-points. The object must live as long as the verb.
+  /// Adds --eps, --min-area and --link-points. The object must live as long as the verb.
   void add_to(CLI::App& verb);
   /// Adds --clusters; without it there are none.
   void add_clusters_to(CLI::App& verb);
-  /// Adds --b-eps.
+  /// Adds --eps1 and --b-eps.
   void add_update_to(CLI::App& verb);
 
   /// As given, else as the scene says, else by default; where clusters are linked and none says how to cut, into

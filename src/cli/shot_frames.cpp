@@ -192,10 +192,9 @@ class Frames {
     }
     const std::vector<std::string> edits = names_of_edits(given_, station);
     Json frame = record(station, edits, error);
-    const std::string line = fmt::format(
-        "frame {:3}  {:>9.3f} s  {:5} + {:5} shots  error {}  of the 1 % {}  {}\n", result_.frames.size(), seconds,
-        work_.redistributions + work_.gatherings, work_.propagations, error ? fmt::format("{:.3g}", error->all) : "-",
-        error ? fmt::format("{:.3g}", error->worst_1_percent) : "-", fmt::format("{}", fmt::join(edits, ", ")));
+    const std::string line = fmt::format("frame {:3}  {:>9.3f} s  {:5} + {:5} shots  {}  {}\n", result_.frames.size(),
+                                         seconds, work_.redistributions + work_.gatherings, work_.propagations,
+                                         in_words(error), fmt::format("{}", fmt::join(edits, ", ")));
     if (options_.images) draw(station.time, B);
     if (stopped_) keep();  // without the frame, which is not done
     result_.frames.push_back(std::move(frame));

@@ -211,7 +211,7 @@ class Solve {
 
  private:
   HierarchicalSolution solve_links(const Scene& scene, Clock::time_point start) {
-    for (const char* name : {"--solver", "--form-factor-tolerance", "--elements"}) {
+    for (const char* name : {"--solver", "--form-factor-tolerance", "--elements", "--save-every"}) {
       if (verb_.get_option(name)->count() > 0)
         throw CLI::ValidationError(name, "has no meaning for --method hierarchical");
     }

@@ -11,6 +11,9 @@ using End = LinkCode::End;
 
 namespace {
 
+/// Of a link's visibility, which is known to about 1e-13.
+constexpr double kNothing = 0x1p-40;
+
 bool is_blocked(const std::optional<Sight>& sight) {
   return sight && sight->state == Sight::State::blocked;
 }
@@ -39,9 +42,13 @@ bool PairUpdate::face_each_other(const Ends& ends) const {
   return exitance::face_each_other(tree_.node(ends.receiver), tree_.node(ends.source), task_.now->soup());
 }
 
+/// Of the source. Shots leave some of it a little below 0 where it is dark, which is no less than nothing.
+double PairUpdate::light(const Ends& ends) const {
+  return std::max(0.0, task_.luminance[ends.source]);
+}
+
 double PairUpdate::energy(const Ends& ends, double form_factor) const {
-  return task_.luminance[ends.source] *
-         judged_form_factor(tree_.node(ends.receiver), tree_.node(ends.source), form_factor);
+  return light(ends) * judged_form_factor(tree_.node(ends.receiver), tree_.node(ends.source), form_factor);
 }
 
 /// At any point of the receiver.
@@ -50,7 +57,7 @@ double PairUpdate::most_form_factor(const Ends& ends) const {
 }
 
 double PairUpdate::most_energy(const Ends& ends) const {
-  return task_.luminance[ends.source] * most_form_factor(ends);
+  return light(ends) * most_form_factor(ends);
 }
 
 /// Whether what covers the receiver changes what a link, or a descendant of it, brings.
@@ -218,7 +225,7 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (only_significant() && !renewed && is_insignificant(link)) return leave_stale();
     changed_ = true;
     if (!face_each_other(ends)) return;
-    const double Y = task_.luminance[ends.source];
+    const double Y = light(ends);
     if (only_significant() && !link.ghost && Y * link.transfer() < task_.B_eps) {
       if (most_energy(ends) < task_.B_eps) return leave_stale();
     }
@@ -255,8 +262,12 @@ void PairUpdate::visit(std::span<const Link> old, Above* above, bool renewed) {
     if (judges && has_changed && (here.before || above->affected)) {
       // What moved in can only hide, what moved away only reveal.
       const double v = link.visibility;
-      const double most = std::max(touched || !here.before ? v : 0, touched_before ? 1 - v : 0) * energy(ends, F);
-      if (most < task_.B_eps && !anew) return leave_stale();
+      const double share = std::max(touched || !here.before ? v : 0, touched_before ? 1 - v : 0);
+      if (share * energy(ends, F) < task_.B_eps && !anew) {
+        if (share > kNothing) return leave_stale();
+        forget();  // it brings what it did: nothing, or all of it
+        return copy(old);
+      }
     }
     const bool asks = !only_significant() || !link.ghost || has_stale;
     if (asks) touched = has_changed && touches_changed(sight_of(here));

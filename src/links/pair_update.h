@@ -69,6 +69,7 @@ class PairUpdate {
 
   bool has_moved(const Root& root) const { return !task_.moved.empty() && task_.moved[root.object] != 0; }
   bool face_each_other(const Ends& ends) const;
+  double light(const Ends& ends) const;
   double energy(const Ends& ends, double form_factor) const;
   double most_form_factor(const Ends& ends) const;
   double most_energy(const Ends& ends) const;

@@ -436,7 +436,7 @@ void set_energies(std::span<Link> links, const PatchTree& tree, std::span<const 
   for (std::size_t i = links.size(); i-- > 0;) {
     Link& link = links[i];
     if (!link.ghost) {
-      link.energy = luminance[link.source] *
+      link.energy = std::max(0.0, luminance[link.source]) *
                     judged_form_factor(tree.node(link.destination), tree.node(link.source), link.form_factor);
       continue;
     }

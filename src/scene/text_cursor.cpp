@@ -35,6 +35,8 @@ std::string read_bytes(const std::filesystem::path& path) {
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw InputError(path.string(), 0, "no such file; check the path");
   if (std::filesystem::is_directory(status)) throw InputError(path.string(), 0, "is a folder; name a file in it");
+  if (std::filesystem::is_character_file(status))
+    throw InputError(path.string(), 0, "is a device, which may have no end; name a file or a pipe");
   std::ifstream stream(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(stream), {}};
   if (!stream.is_open() || stream.bad()) throw InputError(path.string(), 0, "cannot be read; check its permissions");

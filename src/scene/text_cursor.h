@@ -8,7 +8,7 @@
 
 namespace exitance {
 
-/// The bytes of a file. Throws InputError when there is none or it cannot be read.
+/// The bytes of a file or a pipe. Throws InputError when there is none, it cannot be read, or is a device.
 std::string read_bytes(const std::filesystem::path& path);
 
 /// Whether a name that is given in a file names one, which has an end: no folder, device or pipe, nothing longer

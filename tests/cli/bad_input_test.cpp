@@ -85,6 +85,8 @@ TEST_F(BadInputTest, Folders) {
 TEST_F(BadInputTest, NamesThatAreTooLongOrNoFiles) {
   const std::string cube = data("furnace_cube.toml"), long_name(300, 'x');
   expect_of_scene(3, long_name + ".obj", "no such file");
+  std::filesystem::create_symlink("/dev/zero", scratch / "zero.obj");
+  expect_of_scene(3, (scratch / "zero.obj").string(), "is a device");
   expect_of_scene(3, write("long.toml", "[[object]]\nmesh = \"" + long_name + ".obj\"\n"), "long.toml:2: ");
   expect_of_scene(3, write("device.toml", "[[object]]\nmesh = \"/dev/zero\"\n"), "device.toml:2: ");
   write("room.obj", "v 0 0 0\n");
@@ -96,7 +98,9 @@ TEST_F(BadInputTest, NamesThatAreTooLongOrNoFiles) {
   EXPECT_EQ(outcome.code, 3);  // after a warning that nothing happens in the scene
   EXPECT_THAT(outcome.err, testing::HasSubstr("too long"));
   expect(3, "stress --count 1 -o " + long_name, "too long");
-  expect(3, "cases " + long_name, "cannot be read");
+  expect(3, "cases " + long_name, "no such file");
+  expect(3, "cases /dev/zero", "is a device");
+  expect(3, "cases " + (scratch / ".").string(), "is a folder");
   expect(3, "diff " + long_name + " " + long_name, "no such file");
 }
 

@@ -8,6 +8,7 @@
 
 #include "tests/form_factor/closed_forms.h"
 #include "tests/output/scratch_folder.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -28,8 +29,7 @@ class Cases : public testing::Test {
   }
   Outcome run_file(const std::string& file, const std::string& options = "") {
     const std::string out = (folder_ / "out").string(), err = (folder_ / "err").string();
-    const std::string command =
-        std::string(EXITANCE_PROGRAM) + " cases " + file + " " + options + " > " + out + " 2> " + err;
+    const std::string command = program() + " cases " + file + " " + options + " > " + out + " 2> " + err;
     const int status = std::system(command.c_str());
     return {WEXITSTATUS(status), contents(out), contents(err)};
   }
@@ -408,8 +408,8 @@ TEST_F(Cases, FilesThatCannotBeUsedAreRefusedInOneLine) {
     EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
     EXPECT_NE(r.err.find(part), std::string::npos) << r.err;
   };
-  refused(run_file("/nowhere/cases.json"), "/nowhere/cases.json: cannot be read");
-  refused(run_file("/"), "cannot be read");
+  refused(run_file("/nowhere/cases.json"), "/nowhere/cases.json: no such file");
+  refused(run_file("/"), "is a folder");
   refused(run("{\"cases\":[\n{\"id\":1},\n{\"id\":]}"), "cases.json:3: is not JSON: syntax error");
   refused(run("{\"cases\":[\n"), "is not JSON");
   refused(run(""), "cases.json:1: is not JSON");

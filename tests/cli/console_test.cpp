@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/cli/program.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 Outcome on_a_full_disk(const std::string& arguments) {
   const ScratchFolder scratch;
   const std::string err = (scratch / "err").string();
-  const int status = std::system((EXITANCE_PROGRAM " " + arguments + " >/dev/full 2>" + err + " </dev/null").c_str());
+  const int status = std::system((program() + " " + arguments + " >/dev/full 2>" + err + " </dev/null").c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", contents(err)};
 }
 

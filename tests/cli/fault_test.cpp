@@ -12,6 +12,7 @@
 #include "src/reference/solution_record.h"
 #include "tests/cli/program.h"
 #include "tests/cli/running.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -74,9 +75,9 @@ TEST(FullDisk, EndsEveryVerbWithAMessageAndNothingHalfWritten) {
         "formfactor " + cube + " --patch-size 0.25" + out + "a.csv",
         "reference " + cube + " --error 1e-6 --save-every 0" + out + "r.h5",
         "solve " + cube + " --patch-size 0.5" + out + "solved",
-        "dynamic " EXITANCE_SOURCE_DIR "/tests/fuzz/seeds/scene.toml --method scratch --patch-size 1 --elements 1" +
+        "dynamic " + source_file("tests/fuzz/seeds/scene.toml") + " --method scratch --patch-size 1 --elements 1" +
             out + "frames",
-        "dynamic " EXITANCE_SOURCE_DIR "/tests/fuzz/seeds/scene.toml --method hvt" + out + "frames",
+        "dynamic " + source_file("tests/fuzz/seeds/scene.toml") + " --method hvt" + out + "frames",
         "solve " + cube + " --method hierarchical" + out + "linked",
         "generate furnished-room --polygons 500" + out + "r.obj",
         "compare " + cube + " --against rays:16" + out + "worst.vtp", "stress --count 29" + out + "stress",

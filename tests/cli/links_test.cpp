@@ -106,8 +106,8 @@ TEST(Links, OfGroupsLeavePatchesAsTheyAreGiven) {
 TEST(Links, TellWhatTheyLeaveUndone) {
   const ScratchFolder scratch;
   const auto frames_of = [&](const std::string& how) {
-    const Outcome outcome = run("dynamic " + data("cube.toml") + kCoarse + how + " --no-images -o " +
-                                (scratch / "d").string());
+    const Outcome outcome =
+        run("dynamic " + data("cube.toml") + kCoarse + how + " --no-images -o " + (scratch / "d").string());
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     const bool told = outcome.out.find("left undone") != std::string::npos;
     const auto frames = json_in(scratch / "d" / "frames.json");
@@ -180,6 +180,20 @@ TEST(Links, WarnOfWhatPassesThroughWalls) {
   EXPECT_THAT(outcome.err, HasSubstr("wall.toml:14: object 'cube' passes through 'room'"));
 }
 
+TEST(Links, FramesThatAreNotFinishedSaySo) {
+  const ScratchFolder scratch;
+  const std::string to = std::string(kCoarse) + "--method hvt --no-images -o " + (scratch / "d").string();
+  const auto finished = [&](const std::string& how, int code) {
+    const Outcome outcome = run("dynamic " + data("cube.toml") + how + to);
+    EXPECT_EQ(outcome.code, code) << outcome.err;
+    return json_in(scratch / "d" / "frames.json").back()["finished"].get<bool>();
+  };
+  EXPECT_TRUE(finished("", 0));
+  EXPECT_FALSE(finished(" --budget-ms 0", 0)) << "pairs are left";
+  EXPECT_FALSE(finished(" --tolerance 1e-300", 0)) << "the exchange of energy does not get there";
+  EXPECT_FALSE(finished(" --time-limit 1e-9", 4)) << "links are not refined to the end";
+}
+
 TEST(Links, OptionsThatMeanNothingAreRefused) {
   const ScratchFolder scratch;
   const Outcome solved = run("solve " + data("furnace_cube.toml") + " --eps 0.1");
@@ -189,13 +203,17 @@ TEST(Links, OptionsThatMeanNothingAreRefused) {
   EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method scratch --b-eps 0.1" + to).code, 2);
   EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method hvt --eps 0.1 --eps1 0.2" + to).code, 2);
   EXPECT_EQ(run("solve " + data("furnace_cube.toml") + " --method hierarchical --receivers area").code, 2);
-  for (const char* option : {"--solver jacobi", "--form-factor-tolerance 1e-3", "--elements 2", "--shots 3"}) {
+  for (const char* option : {"--solver jacobi", "--form-factor-tolerance 1e-3", "--elements 2", "--shots 3",
+                             "--save-every 1", "--eps1 0.01"}) {
     const Outcome refused = run("solve " + data("furnace_cube.toml") + " --method hierarchical " + option);
     EXPECT_EQ(refused.code, 2) << option;
     EXPECT_THAT(refused.err, HasSubstr(std::string(option).substr(0, std::string(option).find(' '))));
   }
   EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method hvt --clusters on" + to).code, 2);
   EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method rebuild --budget-ms 1" + to).code, 2);
+  EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method rebuild --work-off" + to).code, 2);
+  EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method rebuild --eps1 0.001" + to).code, 2);
+  EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method hvt --no-images --image-size 9" + to).code, 2);
   std::ofstream(scratch / "bad.toml") << "[links]\neps2 = -1\n[[material]]\nname = \"m\"\nrho = 0.5\n[[object]]\n"
                                          "box = {min = [0,0,0], max = [1,1,1]}\nmaterial = \"m\"\n";
   const Outcome bad = run("solve " + (scratch / "bad.toml").string());

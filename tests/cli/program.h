@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/output/scratch_folder.h"
+#include "tests/places.h"
 
 namespace exitance {
 
@@ -27,7 +28,7 @@ inline Outcome run(const std::string& arguments, const std::string& before = "")
   const ScratchFolder scratch;
   const std::string out = (scratch / "out").string(), err = (scratch / "err").string();
   const int status =
-      std::system((before + " " EXITANCE_PROGRAM " " + arguments + " >" + out + " 2>" + err + " </dev/null").c_str());
+      std::system((before + " " + program() + " " + arguments + " >" + out + " 2>" + err + " </dev/null").c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(out), contents(err)};
 }
 
@@ -38,7 +39,7 @@ inline void run_and_kill(const std::string& arguments, double seconds) {
 }
 
 inline std::string data(const std::string& name) {
-  return EXITANCE_SOURCE_DIR "/data/" + name;
+  return source_file("data/" + name);
 }
 
 inline nlohmann::json json_in(const std::filesystem::path& file) {

@@ -12,6 +12,8 @@
 #include <string>
 #include <thread>
 
+#include "tests/places.h"
+
 namespace exitance {
 
 /// How many files of a folder have the extension; 0 where there is no folder.
@@ -28,7 +30,7 @@ class Running {
   /// messages: a file for what it tells on stderr.
   explicit Running(const std::string& arguments, const std::string& messages = "/dev/null") : child_(fork()) {
     if (child_ != 0) return;
-    const std::string command = "exec " EXITANCE_PROGRAM " " + arguments + " >/dev/null 2>" + messages + " </dev/null";
+    const std::string command = "exec " + program() + " " + arguments + " >/dev/null 2>" + messages + " </dev/null";
     execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
     _exit(127);
   }

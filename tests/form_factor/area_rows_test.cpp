@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "src/scene/reader.h"
+#include "tests/places.h"
 #include "tests/scene/turned_scene.h"
 
 namespace exitance {
 namespace {
 
 Scene scene_in(const char* file) {
-  return read_scene(std::string(EXITANCE_SOURCE_DIR) + "/data/" + file);
+  return read_scene(source_file("data/" + std::string(file)));
 }
 
 AreaRows rows_of(const Scene& scene, double patch_size, std::uint32_t elements, double tolerance) {

@@ -10,6 +10,7 @@
 #include "src/form_factor/visual_events.h"
 #include "src/scene/reader.h"
 #include "src/stress/placement.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -151,7 +152,7 @@ KnownScene known_scene(std::string_view name) {
   KnownScene known;
   const Loops unit_box = box({1, 1, 1}, {1, 0, 0, 0}, {1.5, 1.5, 0.5});
   if (name == "box_room") {
-    known.scene = read_scene(std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / "box_on_floor.toml");
+    known.scene = read_scene(source_file("data/box_on_floor.toml"));
     known.patch_size = 1.0 / 3;
     known.bodies.push_back(unit_box);
   } else if (name == "box_on_uncut_floor") {

@@ -19,6 +19,7 @@
 #include "src/stress/placement.h"
 #include "tests/form_factor/closed_forms.h"
 #include "tests/form_factor/exchange_scenes.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -176,7 +177,7 @@ struct Entry {
 };
 
 std::filesystem::path file_of(const std::string& name) {
-  return std::filesystem::path(EXITANCE_SOURCE_DIR) / "tests" / "form_factor" / "truth" / (name + ".csv");
+  return source_file("tests/form_factor/truth/" + name + ".csv");
 }
 
 /// Lines `i,j,kind,F,error`, after comments and a header.

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "src/form_factor/pair_form_factor.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -35,7 +36,7 @@ struct Entry {
 };
 
 std::vector<Entry> stored() {
-  std::ifstream in(EXITANCE_SOURCE_DIR "/tests/form_factor/truth/hard_pairs.csv");
+  std::ifstream in(source_file("tests/form_factor/truth/hard_pairs.csv"));
   std::vector<Entry> entries;
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with('#') || line.starts_with("family")) continue;

@@ -9,6 +9,7 @@
 #include "src/form_factor/kept_rows.h"
 #include "src/scene/reader.h"
 #include "tests/output/scratch_folder.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -33,7 +34,7 @@ class PairRunTest : public testing::Test {
     EXPECT_EQ(pairs_by_class(a.rows, n), pairs_by_class(b.rows, n));
   }
 
-  const Scene given_ = read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml");
+  const Scene given_ = read_scene(source_file("data/box_on_floor.toml"));
   const PolygonSoup soup_ = make_soup(given_);
   const PatchMesh mesh_ = make_patch_mesh(given_, soup_, {.patch_size = 1.5});
   const ExchangeScene scene_{soup_, mesh_};

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "src/scene/reader.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -23,7 +24,7 @@ class PairSampleTest : public testing::Test {
     return sample_pairs(scene_, of, options_, 16, seed);
   }
 
-  const Scene given_ = read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml");
+  const Scene given_ = read_scene(source_file("data/box_on_floor.toml"));
   const PolygonSoup soup_ = make_soup(given_);
   const PatchMesh mesh_ = make_patch_mesh(given_, soup_, {.patch_size = 1});
   const ExchangeScene scene_{soup_, mesh_};

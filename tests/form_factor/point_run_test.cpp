@@ -9,6 +9,7 @@
 #include "src/scene/reader.h"
 #include "src/visibility/exact_visibility.h"
 #include "tests/output/damage.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -34,7 +35,7 @@ class PointRunTest : public testing::Test {
     EXPECT_EQ(a.statistics.closure_max_defect, b.statistics.closure_max_defect);
   }
 
-  const Scene given_ = read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml");
+  const Scene given_ = read_scene(source_file("data/box_on_floor.toml"));
   const PolygonSoup soup_ = make_soup(given_);
   const PatchMesh mesh_ = make_patch_mesh(given_, soup_, {.patch_size = 1, .elements_per_edge = 6});
   const ExactVisibility visibility_{mesh_, soup_};

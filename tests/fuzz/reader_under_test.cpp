@@ -12,6 +12,7 @@
 #include "src/scene/reader.h"
 #include "src/scene/scene_check.h"
 #include "src/scene/scene_file.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -83,7 +84,7 @@ std::span<const ReaderUnderTest> readers_under_test() {
 }
 
 std::string seed_path(const std::string& name) {
-  return EXITANCE_SOURCE_DIR "/tests/fuzz/seeds/" + name;
+  return source_file("tests/fuzz/seeds/" + name);
 }
 
 void copy_companions(const std::string& folder) {

@@ -22,6 +22,16 @@ PointFormFactor ask(const std::vector<Polygon>& polygons, const Vec3& x, const V
   return view.form_factor({soup.first_facet(static_cast<std::uint32_t>(polygons.size()) - 1), {}});
 }
 
+/// A turn by 3, 4, 5 and a scale by 5, which keep small whole numbers and their halves exact.
+Vec3 turned_by_345(const Vec3& v) {
+  return {3 * v.x - 4 * v.z, 5 * v.y, 4 * v.x + 3 * v.z};
+}
+std::vector<Polygon> turned_by_345(std::vector<Polygon> polygons) {
+  for (Polygon& polygon : polygons)
+    std::ranges::transform(polygon.outer, polygon.outer.begin(), [](const Vec3& v) { return turned_by_345(v); });
+  return polygons;
+}
+
 TEST(Viewpoint, SaysWhichSideOfASourceItSeesAndThatItIsSeenEdgeOn) {
   const Polygon floor{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {}};
   const auto side_at = [&](double z, bool turned_over) {
@@ -103,6 +113,203 @@ TEST(Viewpoint, OccluderInFrontOnlyBelowTheHorizonHidesNothing) {
     const PointFormFactor with = ask(scene, x, normal, {}), without = ask(scene, x, normal, {1});
     ASSERT_GT(without.F, 1e-3);
     EXPECT_NEAR(with.F, without.F, with.error + without.error);
+  }
+}
+
+// A wall that comes up to the horizon and no further, with an edge or with a corner, is not there to be seen.
+TEST(Viewpoint, ASourceThatOnlyTouchesTheHorizonIsAway) {
+  const Polygon floor{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {}};
+  for (const double last : {0.0, -0.5}) {
+    const Polygon wall{{{2, -1, 0}, {2, -1, -1}, {3, 1, -1}, {3, 1, last}}, {}};
+    for (const bool turn : {false, true}) {
+      std::vector<Polygon> scene{floor, wall};
+      if (turn) scene = turned_by_345(scene);
+      const PointFormFactor seen = ask(scene, {0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}, {});
+      EXPECT_EQ(seen.visibility, Visibility::away);
+      EXPECT_NE(seen.side, Side::edge_on);
+      EXPECT_EQ(seen.F, 0);
+    }
+  }
+}
+
+// A long box that is level with the point lies beside it under a source that fills most of the hemisphere: each side
+// of the source has a part of the box on its inner side.
+TEST(Viewpoint, ABoxThatIsLevelWithThePointHidesNothing) {
+  const auto box = [](double top) {
+    const double a = 1, b = 2, c = 100;
+    return std::vector<Polygon>{{{{a, -c, -1}, {a, c, -1}, {b, c, -1}, {b, -c, -1}}, {}},
+                                {{{a, -c, top}, {b, -c, top}, {b, c, top}, {a, c, top}}, {}},
+                                {{{a, -c, -1}, {b, -c, -1}, {b, -c, top}, {a, -c, top}}, {}},
+                                {{{a, c, -1}, {a, c, top}, {b, c, top}, {b, c, -1}}, {}},
+                                {{{a, -c, -1}, {a, -c, top}, {a, c, top}, {a, c, -1}}, {}},
+                                {{{b, -c, -1}, {b, c, -1}, {b, c, top}, {b, -c, top}}, {}}};
+  };
+  const Polygon source{{{-3, -3, 1}, {-3, 3, 1}, {10, 0, 1}}, {}};
+  const auto seen = [&](double top, bool turn) {
+    std::vector<Polygon> scene = box(top);
+    scene.push_back(source);
+    if (turn) scene = turned_by_345(scene);
+    const PolygonSoup soup(scene);
+    Viewpoint view(soup);
+    view.look_from({{0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}});
+    return view.form_factor({6, {}});
+  };
+  for (const bool turn : {false, true}) {
+    const PointFormFactor level = seen(0, turn);
+    EXPECT_EQ(level.visibility, Visibility::open);
+    EXPECT_NEAR(level.F, seen(-0.5, turn).F, 2 * level.error);
+    EXPECT_LT(seen(0.25, turn).F, level.F - 1e-3);
+  }
+}
+
+// Of a source of which two plates that overlap hide a part each nothing is left.
+TEST(Viewpoint, WhatIsHiddenInPartsIsBlocked) {
+  const std::vector<Polygon> polygons = {{{{-2, -2, 2}, {0.25, -2, 2}, {0.25, 2, 2}, {-2, 2, 2}}, {}},
+                                         {{{-0.25, -2, 2}, {2, -2, 2}, {2, 2, 2}, {-0.25, 2, 2}}, {}},
+                                         {{{-1, -1, 4}, {-1, 1, 4}, {1, 1, 4}, {1, -1, 4}}, {}}};
+  for (const bool turn : {false, true}) {
+    const PolygonSoup soup(turn ? turned_by_345(polygons) : polygons);
+    Viewpoint view(soup);
+    view.look_from({{0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}});
+    const PointFormFactor seen = view.form_factor({2, {}});
+    EXPECT_EQ(seen.visibility, Visibility::blocked);
+    EXPECT_EQ(seen.F, 0);
+  }
+}
+
+// What is seen of a square past a plate, of which a strip stands over its edge: the boundary runs so that it encloses
+// the visible area to its left, seen from the point, whichever side the square shows; of nothing there is no boundary.
+TEST(Viewpoint, TheVisibleRegionLiesToTheLeftOfItsBoundary) {
+  const Polygon square{{{-2, -2, 2}, {-2, 2, 2}, {2, 2, 2}, {2, -2, 2}}, {}};
+  const Polygon plate{{{-0.5, -0.25, 1}, {2, -0.25, 1}, {2, 0.5, 1}, {-0.5, 0.5, 1}}, {}};  // hides 3 by 1.5
+  for (const bool from_above : {false, true}) {
+    for (const bool turn : {false, true}) {
+      std::vector<Polygon> scene{square, plate};
+      if (from_above) {
+        for (Vec3& v : scene[1].outer) v.z = 3;
+      }
+      if (turn) scene = turned_by_345(scene);
+      const PolygonSoup soup(scene, std::vector<Role>{Role::patch, Role::sheet});
+      Viewpoint view(soup);
+      const auto placed = [&](const Vec3& v) { return turn ? turned_by_345(v) : v; };
+      const Vec3 x = placed({0, 0, from_above ? 4.0 : 0.0}), up = placed({0, 0, 1});
+      view.look_from({x, (from_above ? -1.0 : 1.0) * up});
+      Vec3 twice;
+      for (const BoundaryPiece& piece : view.visible_region({0, {}})) {
+        EXPECT_NE(piece.from, piece.to);
+        twice = twice + cross(piece.from - x, piece.to - x);
+      }
+      const double scale = turn ? 25 : 1, towards = (from_above ? 1 : -1) * dot(up, twice) / (2 * norm(up));
+      EXPECT_NEAR(towards, scale * (16 - 4.5), scale * 1e-12) << from_above << turn;
+    }
+  }
+  const std::vector<Polygon> hidden = {square,
+                                       {{{-2, -2, 1}, {0, -2, 1}, {0, 2, 1}, {-2, 2, 1}}, {}},
+                                       {{{0, -2, 1}, {2, -2, 1}, {2, 2, 1}, {0, 2, 1}}, {}}};
+  const PolygonSoup soup(hidden);
+  Viewpoint view(soup);
+  view.look_from({{0.125, 0.25, 0}, {0, 0, 1}});
+  EXPECT_TRUE(view.visible_region({0, {}}).empty());
+}
+
+// A wall that stands on the floor or reaches below it, seen past a box that stands on the floor and under a shelf that
+// goes through the wall: which lines bound what is seen, where their stretches lie, and that the outline counts each of
+// them once, but of what is level with the point only how many pieces there are.
+TEST(Viewpoint, TheOutlineIsOfTheEdgesThatAreSeen) {
+  const Polygon floor{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {}};
+  const Polygon shelf{{{3, -0.5, 2.5}, {5, -0.5, 2.5}, {5, 0.5, 2.5}, {3, 0.5, 2.5}}, {}};
+  const auto wall = [](double bottom) {  // with a corner in the middle of an edge
+    return Polygon{{{4, -2, bottom}, {4, -2, 5}, {4, 2, 5}, {4, 2, bottom}, {4, 1.5, bottom}}, {}};
+  };
+  const std::vector<Polygon> box = {{{{2, -0.5, 0}, {2, 0.5, 0}, {2.5, 0.5, 0}, {2.5, -0.5, 0}}, {}},
+                                    {{{2, -0.5, 1}, {2.5, -0.5, 1}, {2.5, 0.5, 1}, {2, 0.5, 1}}, {}},
+                                    {{{2, -0.5, 0}, {2.5, -0.5, 0}, {2.5, -0.5, 1}, {2, -0.5, 1}}, {}},
+                                    {{{2, 0.5, 0}, {2, 0.5, 1}, {2.5, 0.5, 1}, {2.5, 0.5, 0}}, {}},
+                                    {{{2, -0.5, 0}, {2, -0.5, 1}, {2, 0.5, 1}, {2, 0.5, 0}}, {}},
+                                    {{{2.5, -0.5, 0}, {2.5, 0.5, 0}, {2.5, 0.5, 1}, {2.5, -0.5, 1}}, {}}};
+  struct Look {
+    double bottom;
+    bool has_box, has_shelf;
+    std::size_t level, other, pieces;
+  };
+  for (const Look& look :
+       {Look{0, false, false, 2, 3, 1}, Look{0, true, false, 3, 6, 2}, Look{-1, false, false, 1, 3, 1},
+        Look{-1, true, false, 2, 6, 2}, Look{1, false, false, 0, 5, 0}, Look{1, true, true, 0, 13, 0}}) {
+    for (const bool turn : {false, true}) {
+      std::vector<Polygon> scene = box;
+      scene.insert(scene.end(), {floor, shelf, wall(look.bottom)});
+      if (turn) scene = turned_by_345(scene);
+      const PolygonSoup soup(scene);
+      ASSERT_EQ(soup.facets().size(), 9u);
+      ASSERT_EQ(soup.shells().size(), 1u);
+      std::vector<std::uint32_t> items;
+      if (look.has_shelf) items.push_back(7);
+      if (look.has_box) items.push_back(9);
+      Viewpoint view(soup);
+      view.look_from({{0, 0, 0}, turn ? Vec3{-4, 0, 3} : Vec3{0, 0, 1}, 6});
+      ASSERT_GT(view.form_factor({8, {}}, items, 1e-13).F, 0.01);
+      std::size_t level = 0, other = 0;
+      std::uint64_t sum = 0;
+      for (const SeenEdge& edge : view.seen_edges()) {
+        const Vec3 up = turn ? Vec3{-0.8, 0, 0.6} : Vec3{0, 0, 1};
+        const bool is_level = std::fabs(dot(edge.from, up)) < 1e-9 && std::fabs(dot(edge.to, up)) < 1e-9;
+        is_level ? ++level : ++other;
+        if (!is_level) sum += edge.id;
+        // Both ends lie in the plane of the point and the line, and are no less far apart than the wall shows them.
+        const Vec3 normal = (1 / norm(cross(edge.a, edge.b))) * cross(edge.a, edge.b);
+        EXPECT_NEAR(dot(normal, edge.from), 0, 1e-12);
+        EXPECT_NEAR(dot(normal, edge.to), 0, 1e-12);
+        EXPECT_GT(norm(edge.to - edge.from), 0.01);
+      }
+      EXPECT_EQ(level, look.level) << look.bottom << look.has_box << turn;
+      EXPECT_EQ(other, look.other) << look.bottom << look.has_box << turn;
+      EXPECT_EQ(view.outline() - sum, look.pieces) << look.bottom << look.has_box << turn;
+    }
+  }
+}
+
+// A piece's corners stand for points exactly in its facet's plane, to which they drop along the axis that the plane is
+// most across: such a point may be on another side of the horizon than the rounded corner. `on` is an axis as numbered
+// from the one that the plane is across, mirrored or not.
+TEST(Viewpoint, CornersOfPiecesAreAboveTheHorizonWhereTheyDropTo) {
+  for (const int first : {0, 1, 2}) {
+    for (const double mirrored : {1.0, -1.0}) {
+      const auto on = [&](double a, double b, double c) {
+        Vec3 v;
+        v[first] = mirrored * a;
+        v[(first + 1) % 3] = b;
+        v[(first + 2) % 3] = c;
+        return v;
+      };
+      const auto loop = [&](std::vector<Vec3> corners) {
+        if (mirrored < 0) std::ranges::reverse(corners);
+        return corners;
+      };
+      const auto seen = [&](const std::vector<Vec3>& facet, const std::vector<Vec3>& piece, const Vec3& x,
+                            const Vec3& normal) {
+        const PolygonSoup soup(std::vector<Polygon>{{loop(facet), {}}});
+        Viewpoint view(soup);
+        view.look_from({x, normal});
+        return view.form_factor({0, loop(piece)}).visibility;
+      };
+      // The plane a + b / 2 = 4, the horizon a = 3.5.
+      const std::vector<Vec3> slanted{on(4, 0, -2), on(3, 2, -2), on(3, 2, 2), on(4, 0, 2)};
+      const auto of_slanted = [&](double a, double b) {
+        return seen(slanted, {on(a, b, 0), on(3, 2, -1), on(3, 2, 1)}, on(3.5, -3, 0), on(1, 0, 0));
+      };
+      for (const double off : {0x1p-50, 0x1p-45, -0x1p-50, -0x1p-45}) {
+        EXPECT_EQ(of_slanted(3.5 + off, 1), Visibility::away) << first << ' ' << mirrored << ' ' << off;
+      }
+      EXPECT_EQ(of_slanted(3.5 - 0x1p-51, 1 - 0x1p-49), Visibility::open) << first << ' ' << mirrored;
+      EXPECT_EQ(of_slanted(3.5 + 0x1p-51, 1 + 0x1p-49), Visibility::away) << first << ' ' << mirrored;
+      // The plane a = 2, the horizon 2 b = a.
+      const std::vector<Vec3> across{on(2, -2, -2), on(2, 2, -2), on(2, 2, 2), on(2, -2, 2)};
+      for (const double off : {0x1p-50, -0x1p-50}) {
+        EXPECT_EQ(seen(across, {on(2 - off, 1, 0), on(2 - off, 0, 1), on(2 - off, 0, -1)}, {}, on(-1, 2, 0)),
+                  Visibility::away)
+            << first << ' ' << mirrored << ' ' << off;
+      }
+    }
   }
 }
 
@@ -212,16 +419,47 @@ TEST(Viewpoint, AValueThatItsErrorHidesIsFoundByMoreDigits) {
   const PolygonSoup soup(std::vector<Polygon>{sliver});
   Viewpoint view(soup);
   view.look_from({x, normal});
-  double F = 0, error = 0;
-  for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
-    const PointFormFactor part = view.form_factor({f, {}}, 1e-11);
-    F += part.F;
-    error += part.error;
-  }
   const auto truth = static_cast<double>(oracle_form_factor({x, normal, sliver, {}}).F);
   ASSERT_GT(truth, 1e-12);
-  EXPECT_NEAR(F, truth, 6e-13);
-  EXPECT_LE(std::fabs(F - truth), error);
+  for (const double tolerance : {1e-11, 1e-10}) {
+    double F = 0, error = 0;
+    for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
+      const PointFormFactor part = view.form_factor({f, {}}, tolerance);
+      F += part.F;
+      error += part.error;
+    }
+    EXPECT_NEAR(F, truth, 6e-13) << tolerance;
+    EXPECT_LE(std::fabs(F - truth), error) << tolerance;
+  }
+}
+
+// A strip above the horizon so low that its form factor is just what its error hides, or just not: what is given as 0
+// is wrong by no more than its error there, either.
+TEST(Viewpoint, TheErrorHoldsWhereItJustHidesTheValue) {
+  for (int k = 0; k < 24; ++k) {
+    const Vec3 x{0.1 + 0.01 * k, 0.2, 0}, normal{0, 0, 1};
+    const auto strip = [](double height) {
+      return Polygon{{{1, -1, height}, {1, 1, height}, {1, 1, 0}, {1, -1, 0}}, {}};
+    };
+    const auto seen = [&](double height) {
+      const PolygonSoup soup(std::vector<Polygon>{strip(height)});
+      Viewpoint view(soup);
+      view.look_from({x, normal});
+      return view.form_factor({0, {}}, 1);
+    };
+    double low = 1e-8, high = 1e-6;
+    ASSERT_EQ(seen(low).F, 0);
+    ASSERT_GT(seen(high).F, 0);
+    for (int step = 0; step < 48; ++step) {
+      const double middle = 0.5 * (low + high);
+      (seen(middle).F > 0 ? high : low) = middle;
+    }
+    for (const double height : {low, high}) {
+      const PointFormFactor answer = seen(height);
+      const auto truth = static_cast<double>(oracle_form_factor({x, normal, strip(height), {}}).F);
+      EXPECT_LE(std::fabs(answer.F - truth), answer.error) << k << ": " << height;
+    }
+  }
 }
 
 // Of the two sides of a sheet a point sees one, the front of the side that is turned to it.

@@ -1,5 +1,7 @@
 // The kernel against the oracle, in every degenerate position.
 
+#include "geometry/visible_region.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 #include "geometry/viewpoint.h"
 #include "src/stress/visibility_oracle.h"
 #include "tests/geometry/degenerate_cases.h"
+#include "tests/geometry/solids.h"
 
 namespace exitance {
 namespace {
@@ -94,6 +97,49 @@ TEST_P(DegenerateFamily, AgreesWithTheOracle) {
 
 INSTANTIATE_TEST_SUITE_P(VisibleRegion, DegenerateFamily, testing::ValuesIn(families()),
                          [](const auto& family) { return family.param; });
+
+// Of a source nothing is there where nothing rises above the horizon, be it that corners touch it.
+TEST(VisibleRegion, OfASourceThatOnlyTouchesTheHorizonIsNone) {
+  const Polygon source{{{2, -1, 0}, {2, 1, 0}, {3, 0, -1}}, {}};
+  const PolygonSoup soup(std::vector<Polygon>{source});
+  View view(soup);
+  const std::vector<const Vec3*> corners{&soup.vertices()[0], &soup.vertices()[1], &soup.vertices()[2]};
+  for (const double level : {-0.5, 0.0, 0.5}) {
+    view.look_from({{0, 0, level}, {0, 0, 1}});
+    const std::vector<int> horizon{view.horizon(0), view.horizon(1), view.horizon(2)};
+    VisibleRegion<double> region(view);
+    EXPECT_EQ(region.set_source(0, view.side(0), corners, horizon, nullptr), level < 0) << level;
+  }
+}
+
+// A solid around a corner of the source's cone, outside of no side of it alone, hides nothing; moved towards the middle
+// it hides a part.
+TEST(VisibleRegion, ASolidAroundACornerHidesNothing) {
+  for (const bool turn : {false, true}) {
+    const auto placed = [&](const Vec3& v) { return turn ? Vec3{3 * v.x - 4 * v.z, 5 * v.y, 4 * v.x + 3 * v.z} : v; };
+    for (const double moved : {0.0, -4.0}) {
+      std::vector<Polygon> polygons = prism({{6, -24}, {24, -24}, {24, 24}, {-24, 24}, {-24, 6}, {6, 6}}, 8, 16);
+      for (Polygon& face : polygons) {
+        for (Vec3& v : face.outer) v = v + Vec3{moved, moved, 0};
+      }
+      const auto source = static_cast<std::uint32_t>(polygons.size());
+      polygons.push_back({{{-8, -8, 32}, {-8, 8, 32}, {8, 8, 32}, {8, -8, 32}}, {}});
+      for (Polygon& polygon : polygons) std::ranges::transform(polygon.outer, polygon.outer.begin(), placed);
+      const PolygonSoup soup(polygons);
+      ASSERT_EQ(soup.shells().size(), 1u);
+      View view(soup);
+      view.look_from({{0, 0, 0}, placed({0, 0, 1})});
+      std::vector<const Vec3*> corners;
+      for (const Vec3& v : polygons[source].outer) corners.push_back(&v);
+      const std::uint32_t facet = soup.first_facet(source);
+      VisibleRegion<double> region(view);
+      ASSERT_TRUE(region.set_source(facet, view.side(facet), corners, std::vector<int>{1, 1, 1, 1}, nullptr));
+      ASSERT_TRUE(region.has_silhouette(0));
+      using Effect = VisibleRegion<double>::Effect;
+      EXPECT_EQ(region.add({kNone, 0}), moved == 0 ? Effect::none : Effect::part) << turn;
+    }
+  }
+}
 
 }  // namespace
 }  // namespace exitance

@@ -11,6 +11,7 @@
 #include "src/scene/input_error.h"
 #include "src/scene/scene_file.h"
 #include "tests/links/linked_rooms.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -40,8 +41,7 @@ std::size_t expect_same_values_of_shared(const LinkIndex& a, const LinkIndex& b)
 
 /// A stored scene with many patches and few links.
 struct Stored {
-  DynamicScene given =
-      read_dynamic_scene(std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / "cube.toml", Emission::exitance);
+  DynamicScene given = read_dynamic_scene(source_file("data/cube.toml"), Emission::exitance);
   LinkOptions options = coarse();
 
   Stored() {
@@ -169,8 +169,8 @@ TEST(InterruptedUpdate, ByProgressiveEnergyUpdateSkipsWhatTheWholeOneSkips) {
   }
 }
 
-// What is left when another edit comes is stale and found by it. Which links are refined follows the B that there was at
-// each edit; what they bring does not.
+// What is left when another edit comes is stale and found by it. Which links are refined follows the B that there was
+// at each edit; what they bring does not.
 TEST(InterruptedUpdate, IsWorkedOffByLaterUpdates) {
   const Stored stored;
   for (const LinkMethod method : {LinkMethod::direct, LinkMethod::hvt, LinkMethod::hvt_peu}) {

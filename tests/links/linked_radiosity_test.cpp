@@ -401,6 +401,49 @@ TEST(LinkedRadiosity, WhatPeuLeavesIsWorkedOff) {
   EXPECT_TRUE(links.left_as_it_was().empty());
 }
 
+// Shots take back the light of a lamp that goes to within rounding, here a little more than all of it.
+TEST(LinkedRadiosity, PeuWithoutAThresholdSkipsNothingInTheDark) {
+  Scene scene = room_with_things();
+  scene.surfaces[1].material = 0;  // the ceiling
+  LinkOptions options = coarse();
+  options.B_eps = 0;
+  LinkedRadiosity direct(scene, options), peu(scene, options);
+  direct.build();
+  peu.build();
+  Edit lamp_goes, lamp_comes;
+  lamp_goes.object = lamp_comes.object = 2;
+  lamp_goes.operation = Operation::remove;
+  lamp_comes.operation = Operation::add;
+  const std::vector<std::uint8_t> moves(scene.objects.size());
+  bool below_0 = false;
+  for (const Edit& edit : {lamp_goes, move_to(1, {0.3, 0.1, 0}), move_to(3, {-0.4, 0.5, 0.1}), lamp_comes}) {
+    direct.update({&edit, 1}, LinkMethod::direct);
+    EXPECT_EQ(peu.update({&edit, 1}, LinkMethod::hvt_peu).work.skipped, 0u);
+    EXPECT_TRUE(peu.left_as_it_was().empty());
+    const LinkCounts expected = direct.links().count(direct.tree(), moves),
+                     found = peu.links().count(peu.tree(), moves);
+    EXPECT_EQ(found.active, expected.active);
+    EXPECT_EQ(found.shadow, expected.shadow);
+    EXPECT_EQ(found.ghost, expected.ghost);
+    below_0 = below_0 || std::ranges::any_of(peu.radiosity().luminance(), [](double Y) { return Y < 0; });
+  }
+  EXPECT_TRUE(below_0) << "else this shows nothing";
+}
+
+// What moves into the shaft of a link that brings nothing, or out of that of one that is not hidden, changes neither.
+TEST(LinkedRadiosity, PeuMarksNoLinkThatCannotHaveChanged) {
+  LinkOptions options = coarse();
+  options.B_eps = 1e-12;
+  LinkedRadiosity links(room_with_things(), options);
+  links.build();
+  for (const Vec3& to : {Vec3{0.4, 0.2, 0}, Vec3{-0.1, 0.3, 0.2}}) {
+    const Edit edit = move_to(1, to);
+    links.update({&edit, 1}, LinkMethod::hvt_peu);
+    for (const double left : links.left_as_it_was()) EXPECT_LT(left, 1e-8);
+    EXPECT_LT(error_of(links), 1e-6);
+  }
+}
+
 TEST(LinkedRadiosity, AnyNumberOfThreadsGivesTheSameBits) {
   std::vector<std::unique_ptr<LinkedRadiosity>> all;
   for (const std::size_t threads : {1, 2}) {

@@ -13,6 +13,7 @@
 #include "src/scene/input_error.h"
 #include "src/scene/reader.h"
 #include "tests/output/scratch_folder.h"
+#include "tests/places.h"
 #include "tests/reference/half_shadow.h"
 #include "tests/reference/pointwise_error.h"
 #include "tests/reference/small_shadow.h"
@@ -32,7 +33,7 @@ ReferenceSolution solve(const Scene& scene, const ReferenceOptions& options) {
 }
 
 TEST(ReferenceSolutionTest, AFurnaceIsConstant) {
-  const ReferenceSolution s = solve(read_scene(EXITANCE_SOURCE_DIR "/data/furnace_cube.toml"), wanted(1e-9));
+  const ReferenceSolution s = solve(read_scene(source_file("data/furnace_cube.toml")), wanted(1e-9));
   EXPECT_EQ(s.end, ReferenceEnd::reached);
   EXPECT_LE(s.record.error.total, 1e-9);
   for (const double B : s.record.B) EXPECT_NEAR(B, 2, 1e-9);

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "src/scene/reader.h"
+#include "tests/places.h"
 #include "tests/reference/half_shadow.h"
 
 namespace exitance {
@@ -37,7 +38,7 @@ bool is_cut_at(const PatchMesh& mesh, std::uint32_t surface, double place) {
 }
 
 TEST(RefinedMeshTest, TilesSurfacesAtEveryLevelAndKeepsOtherElements) {
-  const Scene scene = read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml");
+  const Scene scene = read_scene(source_file("data/box_on_floor.toml"));
   const PolygonSoup soup = make_soup(scene);
   RefinedMesh refined(scene, soup, {.elements_per_edge = 4});
   const double area = area_of(refined.mesh());
@@ -67,7 +68,7 @@ TEST(RefinedMeshTest, TilesSurfacesAtEveryLevelAndKeepsOtherElements) {
 }
 
 TEST(RefinedMeshTest, GridsTilePatchesAndFaceTheirWay) {
-  const Scene scene = read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml");
+  const Scene scene = read_scene(source_file("data/box_on_floor.toml"));
   const PolygonSoup soup = make_soup(scene);
   const RefinedMesh refined(scene, soup, {.elements_per_edge = 3});
   const PatchMesh& mesh = refined.mesh();

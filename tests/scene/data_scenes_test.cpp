@@ -11,12 +11,13 @@
 #include "src/scene/reader.h"
 #include "src/scene/scene_check.h"
 #include "src/scene/scene_file.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
 
 Scene scene_called(const char* name) {
-  return read_scene(std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / (std::string(name) + ".toml"));
+  return read_scene(source_file("data/" + std::string(name) + ".toml"));
 }
 
 double total_area(const Scene& scene) {
@@ -84,8 +85,7 @@ std::pair<std::size_t, std::size_t> counts_of(const Scene& scene) {
 }
 
 void expect_counts_within_two_percent(const char* name, double patches, double elements) {
-  const DynamicScene given =
-      read_dynamic_scene(std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / name, Emission::exitance);
+  const DynamicScene given = read_dynamic_scene(source_file("data/" + std::string(name)), Emission::exitance);
   EditedScene edited(given.scene);
   for (std::size_t k = 0; k <= given.events.size(); ++k) {
     if (k > 0) edited.apply(given.events[k - 1].edit);

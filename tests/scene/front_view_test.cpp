@@ -5,13 +5,14 @@
 #include <algorithm>
 
 #include "src/scene/reader.h"
+#include "tests/places.h"
 #include "tests/scene/turned_scene.h"
 
 namespace exitance {
 namespace {
 
 bool only_fronts(const std::string& name) {
-  return sees_only_fronts(read_scene(EXITANCE_SOURCE_DIR "/data/" + name));
+  return sees_only_fronts(read_scene(source_file("data/" + name)));
 }
 
 TEST(FrontView, OfRoomsAndSolidsApart) {
@@ -25,7 +26,7 @@ TEST(FrontView, IsSpoiltByOpeningsAndContacts) {
 }
 
 TEST(FrontView, IsSpoiltByWhatOnlyObstructsAndBySheetsAndTurnedSolids) {
-  Scene room = read_scene(EXITANCE_SOURCE_DIR "/data/furnace_cube.toml");
+  Scene room = read_scene(source_file("data/furnace_cube.toml"));
   const Polygon square{{{0.4, 0.4, 0.5}, {0.6, 0.4, 0.5}, {0.6, 0.6, 0.5}, {0.4, 0.6, 0.5}}, {}};
   Scene with_sheet = room;
   with_sheet.surfaces.push_back({.polygon = square});
@@ -48,7 +49,7 @@ TEST(FrontView, IsSpoiltByWhatOnlyObstructsAndBySheetsAndTurnedSolids) {
 
 /// Turned, surfaces in contact lie in one plane but for rounding.
 TEST(FrontView, IsSpoiltByContactsThatRoundingHasMoved) {
-  const Scene room = read_scene(EXITANCE_SOURCE_DIR "/data/furnace_cube.toml");
+  const Scene room = read_scene(source_file("data/furnace_cube.toml"));
   for (const double height : {0.0, 0.25}) {
     for (const double angle : {0.0, 0.3, 1.1, 2.2})
       EXPECT_EQ(sees_only_fronts(turned(with_solid(room, height), angle)), height > 0) << angle;

@@ -10,13 +10,14 @@
 #include "src/cli/case_reader.h"
 #include "src/stress/property.h"
 #include "tests/cli/program.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
 
 std::vector<std::filesystem::path> corpus() {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(EXITANCE_SOURCE_DIR "/tests/corpus"))
+  for (const auto& entry : std::filesystem::directory_iterator(source_file("tests/corpus")))
     if (entry.path().extension() == ".json") files.push_back(entry.path());
   std::ranges::sort(files);
   return files;

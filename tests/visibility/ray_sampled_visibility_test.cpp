@@ -13,6 +13,7 @@
 #include "src/form_factor/sampled_area_rows.h"
 #include "src/scene/reader.h"
 #include "src/visibility/exact_visibility.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -22,7 +23,7 @@ struct Room {
   explicit Room(std::uint32_t elements = 1)
       : mesh(make_patch_mesh(scene, soup, {.patch_size = 1, .elements_per_edge = elements})) {}
 
-  Scene scene = read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml", {});
+  Scene scene = read_scene(source_file("data/box_on_floor.toml"), {});
   PolygonSoup soup = make_soup(scene);
   PatchMesh mesh;
 };
