@@ -47,26 +47,25 @@ double seconds_since(Clock::time_point start) {
 
 /// Which methods look at an option. What is not here has a meaning for all.
 using Methods = std::vector<std::string>;
-const Methods kByShots = {"scratch", "restart", "redistribute"}, kByLinks = {"rebuild", "direct", "hvt", "hvt-peu"},
-              kButRebuild = {"scratch", "restart", "redistribute", "direct", "hvt", "hvt-peu"};
-const std::vector<std::pair<const char*, Methods>> kMethodsOfOptions = {{"--strategy", {"restart", "redistribute"}},
-                                                                        {"--threshold", {"restart", "redistribute"}},
-                                                                        {"--importance", {"redistribute"}},
-                                                                        {"--importance-points", {"redistribute"}},
-                                                                        {"--object-terms", {"redistribute"}},
-                                                                        {"--no-log", {"restart", "redistribute"}},
-                                                                        {"--budget-shots", kByShots},
-                                                                        {"--budget-ms", kButRebuild},
-                                                                        {"--work-off", kButRebuild},
-                                                                        {"--replay", kByShots},
-                                                                        {"--references", kByShots},
-                                                                        {"--elements", kByShots},
-                                                                        {"--save-every", kByShots},
-                                                                        {"--eps", kByLinks},
-                                                                        {"--eps1", {"direct", "hvt", "hvt-peu"}},
-                                                                        {"--min-area", kByLinks},
-                                                                        {"--link-points", kByLinks},
-                                                                        {"--b-eps", {"hvt-peu"}}};
+const Methods kByShots = {"scratch", "restart", "redistribute"}, kByLinks = {"rebuild", "direct", "hvt", "hvt-peu"};
+const std::vector<std::pair<const char*, Methods>> kMethodsOfOptions = {
+    {"--strategy", {"restart", "redistribute"}},
+    {"--threshold", {"restart", "redistribute"}},
+    {"--importance", {"redistribute"}},
+    {"--importance-points", {"redistribute"}},
+    {"--object-terms", {"redistribute"}},
+    {"--no-log", {"restart", "redistribute"}},
+    {"--budget-shots", kByShots},
+    {"--budget-ms", {"scratch", "restart", "redistribute", "direct", "hvt", "hvt-peu"}},
+    {"--replay", kByShots},
+    {"--references", kByShots},
+    {"--elements", kByShots},
+    {"--save-every", kByShots},
+    {"--eps", kByLinks},
+    {"--eps1", {"direct", "hvt", "hvt-peu"}},
+    {"--min-area", kByLinks},
+    {"--link-points", kByLinks},
+    {"--b-eps", {"hvt-peu"}}};
 
 class Dynamic {
  public:

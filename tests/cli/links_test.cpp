@@ -211,7 +211,6 @@ TEST(Links, OptionsThatMeanNothingAreRefused) {
   }
   EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method hvt --clusters on" + to).code, 2);
   EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method rebuild --budget-ms 1" + to).code, 2);
-  EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method rebuild --work-off" + to).code, 2);
   EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method rebuild --eps1 0.001" + to).code, 2);
   EXPECT_EQ(run("dynamic " + data("cube.toml") + " --method hvt --no-images --image-size 9" + to).code, 2);
   std::ofstream(scratch / "bad.toml") << "[links]\neps2 = -1\n[[material]]\nname = \"m\"\nrho = 0.5\n[[object]]\n"
