@@ -12,6 +12,7 @@
 #include "src/form_factor/pair_rows.h"
 #include "src/scene/reader.h"
 #include "src/visibility/measured_room.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -48,7 +49,7 @@ void require_closure(const FormFactorMatrix& F) {
 /// Arguments: patches an edge of 3 m, and the digits of the tolerance. Counters: seconds of one thread, in all and of
 /// each class of pairs, and the speed-up of two.
 void room_with_box(benchmark::State& state) {
-  const Scene scene = read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml");
+  const Scene scene = read_scene(source_file("data/box_on_floor.toml"));
   const PolygonSoup soup = make_soup(scene);
   MeshOptions mesh_options;
   mesh_options.patch_size = 3.0001 / static_cast<double>(state.range(0));

@@ -8,6 +8,7 @@
 
 #include "src/links/linked_radiosity.h"
 #include "src/scene/scene_file.h"
+#include "tests/places.h"
 
 namespace exitance {
 
@@ -28,8 +29,7 @@ struct LinkScene {
 
   /// `name`: of a scene file in data/.
   explicit LinkScene(const std::string& name)
-      : given(read_dynamic_scene(std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / (name + ".toml"),
-                                 Emission::exitance)),
+      : given(read_dynamic_scene(source_file("data/" + name + ".toml"), Emission::exitance)),
         moves(given.scene.objects.size()) {
     for (const Event& event : given.events) {
       if (event.time != given.events.front().time) break;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "geometry/facets.h"
+#include "geometry/level.h"
 #include "geometry/near_pairs.h"
 #include "geometry/predicates.h"
 #include "geometry/projection.h"
@@ -143,10 +144,33 @@ double overlap_in_projection(Projection projection, const Loop& f, int f_sense, 
   return CGAL::to_double(twice) / 2;
 }
 
+struct Overlap {
+  double area = 0;
+  bool same_facing = false;
+};
+
+// Of facets in exactly one plane.
+Overlap overlap_in_plane(const FlatFacet& f, const FlatFacet& g) {
+  const int f_sense = rotation_sense(f.projection, f.loop), g_sense = rotation_sense(f.projection, g.loop);
+  if (separated_by_edge(f.projection, f.loop, f_sense, g.loop) ||
+      separated_by_edge(f.projection, g.loop, g_sense, f.loop)) {
+    return {};
+  }
+  return {stretch(f) * overlap_in_projection(f.projection, f.loop, f_sense, g.loop, g_sense), f_sense == g_sense};
+}
+
+// Of others.
+Overlap overlap_near_plane(const FlatFacet& f, const FlatFacet& g, double near) {
+  if (near == 0) return {};
+  return {level_area(f.loop, g.loop, near), dot(area_vector(f.loop), area_vector(g.loop)) > 0};
+}
+
 }  // namespace
 
-std::vector<CoplanarOverlap> coplanar_overlaps(std::span<const Polygon> polygons) {
+std::vector<CoplanarOverlap> coplanar_overlaps(std::span<const Polygon> polygons, double near) {
   const std::vector<FlatFacet> facets = make_facets(polygons);
+  std::vector<Box> boxes = make_boxes(facets);
+  for (Box& box : boxes) box = box.grown(0.5 * near);
 
   // Areas by facets first: pairs come in no fixed order, and sums of doubles depend on it.
   struct Part {
@@ -155,16 +179,11 @@ std::vector<CoplanarOverlap> coplanar_overlaps(std::span<const Polygon> polygons
     auto order() const { return std::pair{f, g}; }
   };
   std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, std::vector<Part>> found;
-  for_each_near_pair(make_boxes(facets), [&](std::uint32_t i, std::uint32_t j) {
+  for_each_near_pair(boxes, [&](std::uint32_t i, std::uint32_t j) {
     const FlatFacet &f = facets[i], &g = facets[j];
-    if (f.polygon == g.polygon || !in_one_plane(f, g)) return;
-    const int f_sense = rotation_sense(f.projection, f.loop), g_sense = rotation_sense(f.projection, g.loop);
-    if (separated_by_edge(f.projection, f.loop, f_sense, g.loop) ||
-        separated_by_edge(f.projection, g.loop, g_sense, f.loop)) {
-      return;
-    }
-    const double area = stretch(f) * overlap_in_projection(f.projection, f.loop, f_sense, g.loop, g_sense);
-    found[{f.polygon, g.polygon, f_sense == g_sense}].push_back({i, j, area});
+    if (f.polygon == g.polygon) return;
+    const Overlap overlap = in_one_plane(f, g) ? overlap_in_plane(f, g) : overlap_near_plane(f, g, near);
+    if (overlap.area > 0) found[{f.polygon, g.polygon, overlap.same_facing}].push_back({i, j, overlap.area});
   });
 
   std::vector<CoplanarOverlap> overlaps;

@@ -4,6 +4,7 @@
 #include <CGAL/Exact_rational.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -59,38 +60,68 @@ std::optional<Stretch> stretch_on(const Loop& facet, const DirectedEdge& e) {
   return stretch.first < stretch.second ? std::optional(stretch) : std::nullopt;
 }
 
-bool cover_all(std::vector<Stretch>& stretches) {
+// The stretch of the edge that lies within so much of a convex facet and of its plane.
+std::optional<Stretch> stretch_near(const Loop& facet, const DirectedEdge& e, double near) {
+  const Vec3 normal = normalized(area_vector(facet));
+  const auto is_off = [&](const Vec3& end) { return !(std::fabs(dot(normal, end - facet[0])) <= near); };
+  if (is_off(e.from) || is_off(e.to)) return std::nullopt;
+  double first = 0, second = 1;
+  for (std::size_t i = 0; i < facet.size(); ++i) {
+    const Vec3 &p = facet[i], &q = facet[(i + 1) % facet.size()];
+    if (p == q) continue;
+    const Vec3 inward = normalized(cross(normal, q - p));
+    const double from = dot(inward, e.from - p) + near, to = dot(inward, e.to - p) + near;
+    if (from < 0 && to < 0) return std::nullopt;
+    if (from < 0) first = std::max(first, from / (from - to));
+    if (to < 0) second = std::min(second, from / (from - to));
+  }
+  return first < second ? std::optional(Stretch(first, second)) : std::nullopt;
+}
+
+// Whether stretches leave no gap of more than `gap` between them.
+bool cover_all(std::vector<Stretch>& stretches, const Exact& gap) {
   std::ranges::sort(stretches);
   Exact reached = 0;
   for (const auto& [from, to] : stretches) {
-    if (from > reached) return false;
+    if (from > reached + gap) return false;
     reached = std::max(reached, to);
   }
-  return reached >= 1;
+  return reached + gap >= 1;
 }
 
 }  // namespace
 
 std::vector<bool> edges_in_contact(std::span<const DirectedEdge> edges, std::span<const PieceFacet> facets,
-                                   std::span<const std::uint32_t> piece_of_polygon) {
+                                   std::span<const std::uint32_t> piece_of_polygon, double near) {
   if (edges.empty()) return {};
   std::vector<Box> edge_boxes(edges.size()), facet_boxes(facets.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
     edge_boxes[i].extend(edges[i].from);
     edge_boxes[i].extend(edges[i].to);
+    edge_boxes[i] = edge_boxes[i].grown(near);
   }
   for (std::size_t i = 0; i < facets.size(); ++i) {
     for (const Vec3& p : facets[i].loop) facet_boxes[i].extend(p);
   }
   std::vector<std::vector<Stretch>> stretches(edges.size());
+  std::vector<bool> on_one(edges.size());  // facet, all of the edge: then no other is asked
+  const auto add = [&](std::uint32_t e, std::optional<Stretch> stretch) {
+    if (!stretch) return;
+    on_one[e] = stretch->first == 0 && stretch->second == 1;
+    stretches[e].push_back(*std::move(stretch));
+  };
   for_each_near_pair(edge_boxes, facet_boxes, [&](std::uint32_t e, std::uint32_t f) {
-    if (piece_of_polygon[edges[e].polygon] == facets[f].piece) return;
-    if (auto stretch = stretch_on(facets[f].loop, edges[e])) stretches[e].push_back(*std::move(stretch));
+    if (on_one[e] || piece_of_polygon[edges[e].polygon] == facets[f].piece) return;
+    add(e, stretch_on(facets[f].loop, edges[e]));
+    if (near > 0 && !on_one[e]) add(e, stretch_near(facets[f].loop, edges[e], near));
   });
 
   std::vector<bool> in_contact;
   in_contact.reserve(edges.size());
-  for (auto& of_edge : stretches) in_contact.push_back(cover_all(of_edge));
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const double length = norm(edges[i].to - edges[i].from);
+    in_contact.push_back(cover_all(stretches[i], length > near ? near / length : 1));
+  }
   return in_contact;
 }
 

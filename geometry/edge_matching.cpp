@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "geometry/disjoint_sets.h"
 #include "geometry/near_pairs.h"
 
 namespace exitance {
@@ -24,23 +24,6 @@ Kernel::Point_3 point(const Vec3& p) {
 auto order(const Vec3& p) {
   return std::tuple{p.x + 0.0, p.y + 0.0, p.z + 0.0};
 }
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::uint32_t i, std::uint32_t j) {
-    const std::uint32_t a = root(i), b = root(j);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 void add_loop(const std::vector<Vec3>& loop, bool reversed, std::uint32_t polygon, std::vector<DirectedEdge>& edges) {
   for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -83,8 +66,27 @@ int net_direction(std::span<const DirectedEdge> group) {
   return net;
 }
 
-// Cuts each edge at the ends of the others that lie exactly on it.
-std::vector<DirectedEdge> cut_at_vertices(const std::vector<DirectedEdge>& edges) {
+// Whether a point in an edge's box lies on it between its ends, exactly, or so near to it and not to its ends.
+bool lies_on(const DirectedEdge& e, const Vec3& v, double near) {
+  if (v == e.from || v == e.to) return false;
+  if (near > 0) {
+    const Vec3 along = normalized(e.to - e.from), w = v - e.from;
+    const double t = dot(w, along);
+    if (t > near && dot(e.to - v, along) > near && norm(w - t * along) <= near) return true;
+  }
+  Box box;
+  box.extend(e.from);
+  box.extend(e.to);
+  return box.contains(v) && CGAL::collinear(point(e.from), point(v), point(e.to));
+}
+
+int longest_axis(const Vec3& d) {
+  const double x = std::fabs(d.x), y = std::fabs(d.y), z = std::fabs(d.z);
+  return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+}
+
+// Cuts each edge at the ends of the others that lie on it.
+std::vector<DirectedEdge> cut_at_vertices(const std::vector<DirectedEdge>& edges, double near) {
   std::vector<const Vec3*> ends;
   for (const DirectedEdge& e : edges) ends.insert(ends.end(), {&e.from, &e.to});
   std::ranges::sort(ends, {}, [](const Vec3* p) { return order(*p); });
@@ -95,21 +97,19 @@ std::vector<DirectedEdge> cut_at_vertices(const std::vector<DirectedEdge>& edges
   for (std::size_t i = 0; i < edges.size(); ++i) {
     segments[i].extend(edges[i].from);
     segments[i].extend(edges[i].to);
+    segments[i] = segments[i].grown(near);
   }
   std::vector<std::vector<Vec3>> cuts(edges.size());
   for_each_near_pair(points, segments, [&](std::uint32_t p, std::uint32_t i) {
-    const DirectedEdge& e = edges[i];
-    const Vec3& v = *ends[p];
-    if (v == e.from || v == e.to || !CGAL::collinear(point(e.from), point(v), point(e.to))) return;
-    // On the edge's line and in its box, so between its ends.
-    cuts[i].push_back(v);
+    if (lies_on(edges[i], *ends[p], near)) cuts[i].push_back(*ends[p]);
   });
 
   std::vector<DirectedEdge> pieces;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     // Along a line the order of coordinates is the order of points.
-    std::ranges::sort(cuts[i], {}, order);
-    if (!runs_up(edges[i])) std::ranges::reverse(cuts[i]);
+    const int axis = longest_axis(edges[i].to - edges[i].from);
+    std::ranges::sort(cuts[i], {}, [axis](const Vec3& v) { return std::tuple{v[axis], order(v)}; });
+    if (edges[i].to[axis] < edges[i].from[axis]) std::ranges::reverse(cuts[i]);
     Vec3 from = edges[i].from;
     for (const Vec3& v : cuts[i]) pieces.push_back({std::exchange(from, v), v, edges[i].polygon});
     pieces.push_back({from, edges[i].to, edges[i].polygon});
@@ -208,7 +208,7 @@ std::vector<DirectedEdge> directed_edges(std::span<const Polygon> polygons) {
   return edges;
 }
 
-EdgeMatching match_edges(std::span<const Polygon> polygons) {
+EdgeMatching match_edges(std::span<const Polygon> polygons, double near) {
   DisjointSets sets(polygons.size());
   std::vector<DirectedEdge> unbalanced, crowded;
   const auto unite_pairs = [&](std::vector<DirectedEdge> edges, auto otherwise) {
@@ -225,7 +225,7 @@ EdgeMatching match_edges(std::span<const Polygon> polygons) {
     auto& rest = net_direction(group) == 0 ? crowded : unbalanced;
     rest.insert(rest.end(), group.begin(), group.end());
   });
-  unite_pairs(cut_at_vertices(unbalanced),
+  unite_pairs(cut_at_vertices(unbalanced, near),
               [&](std::span<const DirectedEdge> group) { crowded.insert(crowded.end(), group.begin(), group.end()); });
 
   EdgeMatching matching;

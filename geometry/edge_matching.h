@@ -29,8 +29,9 @@ struct EdgeMatching {
 /// are (−0 equals 0). A vertex that lies exactly on an edge cuts it (T-junction), so a long edge may be cancelled by
 /// several short ones. Where more than two edges meet, those cancel that bound matter between their backs: two boxes
 /// that touch along an edge, or with a whole face, stay two pieces. Repeated vertices make no edge. Takes n log n in
-/// the edges. REQUIRES: finite coordinates.
-EdgeMatching match_edges(std::span<const Polygon> polygons);
+/// the edges. near [m]: a vertex so near to an edge, and farther from its ends, cuts it, too, as far as double precision
+/// tells: T-junctions of turned scenes. REQUIRES: finite coordinates.
+EdgeMatching match_edges(std::span<const Polygon> polygons, double near = 0);
 
 /// Of edges between the same two points, those that bound matter between the backs of their polygons, by their indices
 /// in the group: going round the line, matter begins at one and ends at the other. Each edge is in one pair at most.

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "geometry/facets.h"
+#include "geometry/level_chain.h"
 #include "geometry/polygon_soup_store.h"
 
 namespace exitance {
@@ -27,8 +28,13 @@ bool may_overlap(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, dou
   return std::min(length, std::max(at_c, at_d)) > std::max(0.0, std::min(at_c, at_d)) - near;
 }
 
-Box grown(const Box& box, double by) {
-  return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}};
+/// Whether a facet is the end of a chain (level_chain.h) of three.
+bool ends_chain(const PolygonSoup& soup, std::uint32_t f) {
+  const auto is_other_end = [&](std::uint32_t g) {
+    return g != f && !std::ranges::binary_search(soup.coplanar(f), g) && may_end_chain(soup, f, g);
+  };
+  return std::ranges::any_of(soup.coplanar(f),
+                             [&](std::uint32_t t) { return std::ranges::any_of(soup.coplanar(t), is_other_end); });
 }
 
 }  // namespace
@@ -56,7 +62,7 @@ bool PolygonSoup::is_present(std::uint32_t facet) const {
 bool PolygonSoup::joins(std::uint32_t f, std::uint32_t g, double near) const {
   const auto open_edge_meets = [&](std::uint32_t of, std::uint32_t other) {
     const auto loop = corners(facets_[of]);
-    const Box there = grown(box_of(other), near);
+    const Box there = box_of(other).grown(near);
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const Vec3 &a = loop[k].at, &b = loop[(k + 1) % loop.size()].at;
       Box edge;
@@ -84,7 +90,7 @@ bool PolygonSoup::joins_others(std::uint32_t first, std::uint32_t last, std::vec
   std::vector<std::uint32_t> found;
   for (std::uint32_t f = first; f < last; ++f) {
     found.clear();
-    find_facets(grown(box_of(f), near), found);
+    find_facets(box_of(f).grown(near), found);
     std::erase_if(found, [&](std::uint32_t g) { return first <= g && g < last; });
     if (std::ranges::any_of(found, [&](std::uint32_t g) { return joins(f, g, near); })) return true;
     beside.insert(beside.end(), found.begin(), found.end());
@@ -117,15 +123,15 @@ void PolygonSoup::update_coplanar(std::uint32_t first, std::span<const std::uint
   std::vector<std::uint32_t> near;
   for (std::uint32_t f = first; f < used_; ++f) {
     near.clear();
-    find_facets(box_of(f), near);
+    find_facets(box_of(f).grown(level()), near);
     std::ranges::sort(near);
     for (const std::uint32_t t : near) {
-      if (t >= first || !lies_in_plane(f, t)) continue;
+      if (t >= first || !is_coplanar(f, t)) continue;
       std::vector<std::uint32_t> others = coplanar_[t];
       others.push_back(f);
       coplanar_.set(t, std::move(others));
     }
-    std::erase_if(near, [&](std::uint32_t t) { return t == f || !lies_in_plane(t, f); });
+    std::erase_if(near, [&](std::uint32_t t) { return t == f || !is_coplanar(t, f); });
     coplanar_.set(f, near);
   }
 }
@@ -162,6 +168,13 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   if (extent_coming > before.extent_) return std::nullopt;
   if (extent_leaving == before.extent_ && extent_coming < before.extent_) return std::nullopt;
   if (before.joins_others(gone_first, gone_last, beside)) return std::nullopt;
+  // What goes may be the link of a chain.
+  const auto is_held_by_chain = [&](std::uint32_t t) {
+    return std::ranges::any_of(before.coplanar(t), [&](std::uint32_t u) { return !before.is_coplanar(u, t); });
+  };
+  for (std::uint32_t f = gone_first; f < gone_last; ++f) {
+    if (std::ranges::any_of(before.coplanar(f), is_held_by_chain)) return std::nullopt;
+  }
   // What is behind the walls of one room depends on where others are.
   const auto has_room = [&](std::size_t first, std::size_t last) {
     return std::ranges::any_of(std::span(store.behind).subspan(first, last - first), is_of_room);
@@ -173,6 +186,7 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   after.coplanar_ = before.coplanar_;
   after.gone_ = before.gone_;
   after.extent_ = before.extent_;
+  after.planes_ = before.planes_;
   const std::uint32_t first = store.used;
   const auto first_shell = static_cast<std::uint32_t>(store.shells.size());
   const auto first_polygon = static_cast<std::uint32_t>(store.roles.size());
@@ -194,6 +208,12 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   after.update_coplanar(first, beside);
   after.touched_ = beside;
   for (std::uint32_t f = first; f < store.used; ++f) after.touched_.push_back(f);
+  if (after.level() > 0) {
+    const auto ends = [&](std::uint32_t f) { return ends_chain(after, f); };
+    for (std::uint32_t f = first; f < store.used; ++f) {
+      if (ends(f) || std::ranges::any_of(after.coplanar(f), ends)) return std::nullopt;
+    }
+  }
   if (!store.behind_known &&
       std::ranges::any_of(after.touched_, [&](std::uint32_t f) { return after.is_against_patch(f); }))
     return std::nullopt;

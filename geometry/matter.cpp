@@ -46,9 +46,9 @@ std::vector<Outline> outlines_of(std::span<const Polygon> polygons, const Surfac
 
 }  // namespace
 
-std::vector<Behind> find_matter(std::span<const Polygon> polygons) {
+std::vector<Behind> find_matter(std::span<const Polygon> polygons, double near) {
   std::vector<Behind> behind(polygons.size(), Behind::nothing);
-  const std::vector<SurfacePiece> pieces = find_surface_pieces(polygons).pieces;
+  const std::vector<SurfacePiece> pieces = find_surface_pieces(polygons, near).pieces;
   const auto set = [&](const SurfacePiece& piece, Behind what) {
     for (const std::uint32_t p : piece.polygons) behind[p] = what;
   };
@@ -76,7 +76,7 @@ std::vector<Behind> find_matter(std::span<const Polygon> polygons) {
     walls.push_back(p);
     of_rooms.push_back(polygons[p]);
   }
-  for (const CoplanarOverlap& overlap : coplanar_overlaps(of_rooms)) {
+  for (const CoplanarOverlap& overlap : coplanar_overlaps(of_rooms, near)) {
     if (!overlap.same_facing) behind[walls[overlap.a]] = behind[walls[overlap.b]] = Behind::other_room;
   }
   return behind;

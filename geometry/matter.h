@@ -23,13 +23,13 @@ constexpr bool is_of_room(Behind behind) {
   return behind == Behind::surroundings || behind == Behind::other_room;
 }
 
-/// By polygon, from the closed pieces of surface (surface_pieces.h) and, exactly, from coplanar_overlaps:
+/// By polygon, from the closed pieces of surface (surface_pieces.h) and from coplanar_overlaps (contact.h):
 ///  - a piece that looks in of which every polygon is one of a piece that looks out turned over, corner by corner, is
 ///    with that a closed sheet of two sides: nothing is behind either;
 ///  - a polygon of a room that overlaps one of a room, the same or another, against which it lies has that room behind
 ///    it, all over: a wall that is partly shared by two rooms bounds matter nowhere.
-/// A solid that fills a room exactly is the same as a closed sheet, and taken for that. REQUIRES: no defects but zero
-/// area (find_defect).
-std::vector<Behind> find_matter(std::span<const Polygon> polygons);
+/// A solid that fills a room exactly is the same as a closed sheet, and taken for that. near [m]: of both.
+/// REQUIRES: no defects but zero area (find_defect).
+std::vector<Behind> find_matter(std::span<const Polygon> polygons, double near = 0);
 
 }  // namespace exitance

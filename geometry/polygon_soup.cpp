@@ -8,6 +8,8 @@
 
 #include "geometry/edge_matching.h"
 #include "geometry/facets.h"
+#include "geometry/level_chain.h"
+#include "geometry/level_facets.h"
 #include "geometry/point_hash.h"
 #include "geometry/polygon_soup_store.h"
 #include "geometry/shell.h"
@@ -83,8 +85,8 @@ int side_of(const Plane& plane, const Vec3& v, StageCounts& counts) {
 }
 
 PolygonSoup::PolygonSoup(std::span<const Polygon> polygons, std::span<const Role> roles, std::span<const Rank> ranks,
-                         std::uint32_t spare)
-    : store_(std::make_shared<Store>()) {
+                         std::uint32_t spare, Planes planes)
+    : store_(std::make_shared<Store>()), planes_(planes) {
   if (!roles.empty() && roles.size() != polygons.size())
     throw std::invalid_argument("PolygonSoup: as many roles as polygons, or none");
   if (!ranks.empty() && ranks.size() != polygons.size())
@@ -311,21 +313,44 @@ bool PolygonSoup::lies_in_plane(std::uint32_t t, std::uint32_t f) const {
   });
 }
 
+/// The same, or whether the two are level.
+bool PolygonSoup::is_coplanar(std::uint32_t t, std::uint32_t f) const {
+  if (lies_in_plane(t, f)) return true;
+  return planes_ == Planes::rounded && facets_[t].polygon != facets_[f].polygon && are_level(*this, t, f, level());
+}
+
 void PolygonSoup::find_coplanar() {
   std::vector<Box> boxes(store_->used);
   for (std::uint32_t f = 0; f < boxes.size(); ++f) boxes[f] = box_of(f);
   const SpatialIndex index(boxes);
   std::vector<std::uint32_t> near;
+  bool any_level = false;
   for (std::uint32_t f = 0; f < boxes.size(); ++f) {
     near.clear();
-    index.find(boxes[f], near);
+    const Box around = boxes[f].grown(level());
+    index.find(around, near);
     std::erase_if(near, [&](std::uint32_t t) {
-      return t == f || roles_[facets_[t].polygon] == Role::unoccluding || !boxes[t].overlaps(boxes[f]) ||
-             !lies_in_plane(t, f);
+      if (t == f || roles_[facets_[t].polygon] == Role::unoccluding || !boxes[t].overlaps(around)) return true;
+      if (lies_in_plane(t, f)) return false;
+      if (planes_ == Planes::as_written || facets_[t].polygon == facets_[f].polygon) return true;
+      const bool is_level = are_level(*this, t, f, level());
+      any_level = any_level || is_level;
+      return !is_level;
     });
     if (near.empty()) continue;
     std::sort(near.begin(), near.end());
     coplanar_.set(f, near);
+  }
+  if (!any_level) return;
+  const auto add = [&](std::uint32_t f, std::uint32_t t) {
+    if (roles_[facets_[t].polygon] == Role::unoccluding) return;
+    std::vector<std::uint32_t> others = coplanar_[f];
+    others.insert(std::ranges::lower_bound(others, t), t);
+    coplanar_.set(f, std::move(others));
+  };
+  for (const auto& [f, g] : ends_of_chains(*this, boxes, index)) {
+    add(f, g);
+    add(g, f);
   }
 }
 
@@ -342,7 +367,7 @@ void PolygonSoup::find_what_is_behind(std::span<const Polygon> polygons) {
   const std::size_t first = store.behind.size();
   store.behind.resize(first + polygons.size(), Behind::nothing);
   if (!store.behind_known) return;
-  std::ranges::copy(find_matter(polygons), store.behind.begin() + static_cast<std::ptrdiff_t>(first));
+  std::ranges::copy(find_matter(polygons, level()), store.behind.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
 /// Of the index: the facets from first_facet on, and the convex shells from first_shell on.

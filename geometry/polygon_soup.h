@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/level.h"
 #include "geometry/paged.h"
 #include "geometry/polygon.h"
 #include "geometry/predicates.h"
@@ -29,6 +30,12 @@ enum class Role : std::uint8_t {
 };
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// When facets of different polygons count as in one plane.
+enum class Planes : std::uint8_t {
+  as_written,  ///< where their coordinates say so, exactly
+  rounded      ///< also where they are level (level.h) within kLevel of the extent, as those of turned scenes are
+};
 
 /// A facet's plane: 0 = normal · (v − origin), up to rounding.
 struct Plane {
@@ -90,7 +97,7 @@ class PolygonSoup {
   /// for all `patch`. ranks: likewise, or empty for the order in which they are given. spare: room for so many facets
   /// that later edits bring (`edited`), and for as many polygons.
   explicit PolygonSoup(std::span<const Polygon> polygons, std::span<const Role> roles = {},
-                       std::span<const Rank> ranks = {}, std::uint32_t spare = 0);
+                       std::span<const Rank> ranks = {}, std::uint32_t spare = 0, Planes planes = Planes::as_written);
 
   struct Arrival {
     std::span<const Polygon> polygons;
@@ -105,9 +112,9 @@ class PolygonSoup {
   /// polygons, facets and shells keep their numbers; those that are gone are there still, but in nothing that is
   /// searched. Takes time and memory by what goes and comes and by what lies beside that, not by all. None where it
   /// cannot be told from that alone what others become, and the soup must be made anew: what goes or comes meets edges
-  /// of others or, with edges that it leaves open, their faces; patches lie against each other where none did; the
-  /// extent changes; the spare room is used up. No two threads may make soups from `before`, or from soups that share
-  /// with it, at a time.
+  /// of others or, with edges that it leaves open, their faces; patches lie against each other where none did; a pile of
+  /// facets a few roundings apart (level_chain.h) changes; the extent changes; the spare room is used up. No two threads
+  /// may make soups from `before`, or from soups that share with it, at a time.
   static std::optional<PolygonSoup> edited(const PolygonSoup& before, PolygonRange gone, const Arrival& arrival);
 
   PolygonSoup(const PolygonSoup&) = delete;  // only edits share
@@ -141,7 +148,7 @@ class PolygonSoup {
   std::span<const Shell> shells() const { return shells_; }
 
   /// Other facets that lie exactly in the plane of facet f, or of the same polygon within rounding (2^-40 of f's size),
-  /// and touch its box, ascending.
+  /// and touch its box, and those that are level with it (Planes), one by one or in a chain (level_chain.h), ascending.
   std::span<const std::uint32_t> coplanar(std::uint32_t f) const { return coplanar_[f]; }
 
   /// Whether facet t, one of coplanar(f), covers the front of f where they overlap (Role). Facets of one polygon never
@@ -165,6 +172,10 @@ class PolygonSoup {
 
   /// Largest absolute coordinate.
   double extent() const { return extent_; }
+  /// [m] How far apart facets may lie that count as in one plane: 0 where only coordinates count.
+  double level() const { return planes_ == Planes::rounded ? kLevel * extent_ : 0; }
+  /// [m] The same by way of others between them (level_chain.h).
+  double pile() const { return 64 * level(); }
 
  private:
   struct Store;  // what edited soups share: each place of its arrays is written once
@@ -180,6 +191,7 @@ class PolygonSoup {
   void find_what_is_behind(std::span<const Polygon> polygons);
   void build_index();
   bool lies_in_plane(std::uint32_t t, std::uint32_t f) const;
+  bool is_coplanar(std::uint32_t t, std::uint32_t f) const;
   Box box_of(std::uint32_t facet) const;
   void find_facets(const Box& box, std::vector<std::uint32_t>& found) const;
   bool joins_others(std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& beside) const;
@@ -205,6 +217,7 @@ class PolygonSoup {
   std::vector<std::uint32_t> touched_;
   SpatialIndex index_;
   double extent_ = 0;
+  Planes planes_ = Planes::as_written;
 };
 
 }  // namespace exitance

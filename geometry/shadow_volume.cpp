@@ -55,7 +55,7 @@ void ShadowVolume::set_shooter(const ShaftEnd& shooter) {
   const auto reaches_shooter = [&](const Facet& facet) {
     Box of_facet;
     for (const Corner& c : soup.corners(facet)) of_facet.extend(c.at);
-    return of_facet.overlaps(box);
+    return of_facet.overlaps(box.grown(soup.pile()));
   };
   covers_shooter_ = std::any_of(coplanar.begin(), coplanar.end(), [&](std::uint32_t t) {
     return caster_.has(t) && soup.covers(t, shooter.facet) && reaches_shooter(soup.facets()[t]);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "geometry/level_facets.h"
+
 namespace exitance {
 namespace {
 
@@ -243,11 +245,14 @@ Shaft::Overlap Shaft::overlap_of_facet(std::uint32_t facet) {
 Shaft::Overlap Shaft::overlap_of_shell(std::uint32_t index) {
   const Shell& shell = soup_.shells()[index];
   Overlap result = Overlap::outside;
-  bool of_end = false;
+  bool of_end = false;  // or behind it
   for (std::size_t e = 0; e < 2; ++e) {
     of_end = of_end || soup_.facets()[ends_[e].facet].shell == index;
     for (const std::uint32_t t : soup_.coplanar(ends_[e].facet)) {
-      if (soup_.facets()[t].shell == index) result = std::max(result, cover(t, e));
+      if (soup_.facets()[t].shell != index) continue;
+      result = std::max(result, cover(t, e));
+      of_end = of_end || (dot(soup_.facets()[t].plane.normal, soup_.facets()[ends_[e].facet].plane.normal) > 0 &&
+                          backs(soup_, shell, t, ends_[e].facet, 1));
     }
   }
   // A convex shell lies behind its own facets.
@@ -325,9 +330,9 @@ Shaft::Overlap Shaft::find_occluders(std::vector<std::uint32_t>& items) {
   half_spaces_.clear();
   for (std::size_t i = 0; i < region_.count(); ++i) {
     const HalfSpace h = region_.half_space(i, soup_.extent());
-    if (std::isfinite(h.offset)) half_spaces_.push_back(h);
+    if (std::isfinite(h.offset)) half_spaces_.push_back({h.normal, h.offset - norm(h.normal) * soup_.pile()});
   }
-  soup_.index().find(half_spaces_, box_, items);
+  soup_.index().find(half_spaces_, box_.grown(soup_.pile()), items);
   soup_.prefetch(items);
   Overlap most = Overlap::outside;
   std::erase_if(items, [&](std::uint32_t item) {

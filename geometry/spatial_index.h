@@ -35,6 +35,9 @@ struct Box {
     return lower.x - margin <= p.x && p.x <= upper.x + margin && lower.y - margin <= p.y && p.y <= upper.y + margin &&
            lower.z - margin <= p.z && p.z <= upper.z + margin;
   }
+  Box grown(double margin) const {
+    return {lower - Vec3{margin, margin, margin}, upper + Vec3{margin, margin, margin}};
+  }
   bool overlaps(const Box& b) const {
     return lower.x <= b.upper.x && b.lower.x <= upper.x && lower.y <= b.upper.y && b.lower.y <= upper.y &&
            lower.z <= b.upper.z && b.lower.z <= upper.z;

@@ -34,10 +34,10 @@ Vec3 point_in_front(const Loop& facet) {
 
 class PieceFinder {
  public:
-  explicit PieceFinder(std::span<const Polygon> polygons) : polygons_(polygons) {}
+  PieceFinder(std::span<const Polygon> polygons, double near) : polygons_(polygons), near_(near) {}
 
   SurfacePieces find() {
-    EdgeMatching matching = match_edges(polygons_);
+    EdgeMatching matching = match_edges(polygons_, near_);
     result_.piece_of_polygon = std::move(matching.piece);
     result_.pieces.resize(matching.pieces);
     for (std::uint32_t i = 0; i < polygons_.size(); ++i) {
@@ -69,7 +69,7 @@ class PieceFinder {
   void judge_edges(const std::vector<DirectedEdge>& open) {
     for (SurfacePiece& piece : result_.pieces) piece.closed = true;
     rims_.resize(result_.pieces.size());
-    const std::vector<bool> in_contact = edges_in_contact(open, facets_, result_.piece_of_polygon);
+    const std::vector<bool> in_contact = edges_in_contact(open, facets_, result_.piece_of_polygon, near_);
     for (std::size_t i = 0; i < open.size(); ++i) {
       result_.open_edges.push_back({open[i], in_contact[i]});
       const std::uint32_t piece = result_.piece_of_polygon[open[i].polygon];
@@ -97,7 +97,9 @@ class PieceFinder {
     const Vec3 origin = facets(i).front().loop.front();
     EnclosedVolume volume(origin);
     for (const Loop& loop : closed_surface(i)) volume.add(loop);
-    const double least = rims_[i].empty() ? 0 : kNoVolume * piece.area * norm(boxes_[i].upper - boxes_[i].lower);
+    // A closed one that is no thicker than `near` has half its area times that.
+    const double diameter = norm(boxes_[i].upper - boxes_[i].lower);
+    const double least = piece.area * std::max(0.5 * near_, rims_[i].empty() ? 0 : kNoVolume * diameter);
     if (std::fabs(volume.value()) > least) piece.volume = volume.value();
   }
 
@@ -145,6 +147,7 @@ class PieceFinder {
   }
 
   std::span<const Polygon> polygons_;
+  double near_;
   SurfacePieces result_;
   std::vector<PieceFacet> facets_;
   std::vector<std::size_t> first_facet_;
@@ -154,8 +157,8 @@ class PieceFinder {
 
 }  // namespace
 
-SurfacePieces find_surface_pieces(std::span<const Polygon> polygons) {
-  return PieceFinder(polygons).find();
+SurfacePieces find_surface_pieces(std::span<const Polygon> polygons, double near) {
+  return PieceFinder(polygons, near).find();
 }
 
 }  // namespace exitance

@@ -248,14 +248,15 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   const Vec3 normal = side_of(plane, view.receiver().point, view.counts()) * plane.normal;
   half_spaces.push_back({view.receiver().normal, dot(view.receiver().normal, view.receiver().point) -
                                                      16 * kRoundoff * norm(view.receiver().normal) * reach});
-  half_spaces.push_back(
-      {normal, dot(normal, plane.origin) - (2 * plane.normal_error + 16 * kRoundoff * norm(plane.normal)) * reach});
+  half_spaces.push_back({normal, dot(normal, plane.origin) -
+                                     (2 * plane.normal_error + 16 * kRoundoff * norm(normal)) * reach -
+                                     norm(normal) * soup.pile()});
   Box box;
   box.extend(view.receiver().point);
   for (const Vec3* v : corners) box.extend(*v);
   if (!add_flush_faces(facet)) return false;
   found.clear();
-  soup.index().find(half_spaces, box, found);
+  soup.index().find(half_spaces, box.grown(soup.pile()), found);
   soup.prefetch_corners(found);
   choose_silhouettes();
   return std::ranges::all_of(by_silhouette, [&](std::uint32_t s) { return add_candidate({kNone, s}); }) &&

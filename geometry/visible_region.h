@@ -25,6 +25,7 @@
 
 #include "geometry/chart.h"
 #include "geometry/cone.h"
+#include "geometry/level_facets.h"
 #include "geometry/sieve.h"
 #include "geometry/view_cones.h"
 
@@ -107,7 +108,8 @@ class VisibleRegion {
   enum class Place { nowhere, in_front, across };
 
   /// Where the part of a shell that is above the horizon lies: nowhere in front of the source's plane, nowhere behind
-  /// it, or on both sides.
+  /// it, or on both sides. Where a facet of it is in the source's plane and faces the side that is seen, so that the
+  /// solid lies behind the plane, it is nowhere in front if it is convex and across if not, whatever rounding says.
   Place place_of(const Shell& shell);
 
   /// Calls sink(arc) for every stretch of the boundary, and for those that are empty but might not be without rounding.
@@ -149,6 +151,10 @@ class VisibleRegion {
   bool goes_on(std::uint32_t n, std::pair<std::uint32_t, std::uint32_t> edge, const Facet& occluder, int facing,
                bool covers);
   bool goes_on_all_round(const Facet& occluder, int facing);
+  /// Of a facet in the source's plane.
+  bool covers_source(std::uint32_t facet) const {
+    return facing_source_ > 0 ? soup_.covers(facet, source_facet_) : soup_.covers_back(facet, source_facet_);
+  }
 
   Signed<Real> plane_value(const Plane& plane, const Vec3& v, int sign) const;
   ConeSide<Real> closing_cut(const Plane& T, int facing_occluder) const;
@@ -320,9 +326,16 @@ typename VisibleRegion<Real>::Place VisibleRegion<Real>::place_of(const Shell& s
     const int s = facing_source_ * side_of(*source_plane_, soup_.vertices()[v], view_.counts());
     in_front = in_front || s > 0;
     behind = behind || s < 0;
-    if (above && in_front && behind) return Place::across;
+    if (above && in_front && behind) break;
   }
-  return !above || !in_front ? Place::nowhere : behind ? Place::across : Place::in_front;
+  if (!above || !in_front) return Place::nowhere;
+  const auto backs_source = [&](std::uint32_t f) {
+    return dot(soup_.facets()[f].plane.normal, m) > 0 && std::ranges::binary_search(coplanar_, f) &&
+           (!shell.convex || backs(soup_, shell, f, source_facet_, facing_source_));
+  };
+  if (!coplanar_.empty() && std::ranges::any_of(shell.facets, backs_source))
+    return shell.convex ? Place::nowhere : Place::across;
+  return behind ? Place::across : Place::in_front;
 }
 
 template <class Real>
@@ -347,8 +360,7 @@ typename VisibleRegion<Real>::Effect VisibleRegion<Real>::add_facet(std::uint32_
   if (facing == 0 || facet == source_facet_) return Effect::none;
   const auto loop = soup_.corners(f);
   const bool in_plane = std::ranges::binary_search(coplanar_, facet);
-  const bool covers =
-      in_plane && (facing_source_ > 0 ? soup_.covers(facet, source_facet_) : soup_.covers_back(facet, source_facet_));
+  const bool covers = in_plane && covers_source(facet);
   // Facets of one polygon that lie in one plane only up to rounding may hide each other by as little.
   if (in_plane && !covers && f.polygon != facets[source_facet_].polygon) return Effect::none;
   const Sieve::Verdict verdict = covers ? Sieve::Verdict::unsure : judge(facet, facing);
@@ -419,7 +431,9 @@ bool VisibleRegion<Real>::goes_on(std::uint32_t n, std::pair<std::uint32_t, std:
   const Facet& neighbour = soup_.facets()[n];
   const bool of_convex_shell = neighbour.shell != kNone && soup_.shells()[neighbour.shell].convex;
   if (added_only_ && !of_convex_shell && !std::ranges::binary_search(*added_only_, n)) return false;
-  if (covers) return neighbour.polygon == occluder.polygon && std::ranges::binary_search(coplanar_, n);
+  const bool in_plane = std::ranges::binary_search(coplanar_, n);
+  if (covers) return neighbour.polygon == occluder.polygon && in_plane;
+  if (in_plane && neighbour.polygon != soup_.facets()[source_facet_].polygon && !covers_source(n)) return false;
   const auto loop = soup_.corners(occluder);
   const auto side_of_source = [&](const Corner& c) {
     return facing_source_ * side_of(*source_plane_, c.at, view_.counts());

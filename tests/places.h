@@ -1,6 +1,6 @@
 #pragma once
-// Where the tests find what they run and read. Only places.cpp knows, so that all else compiles alike in every folder and
-// its objects come from the compiler's cache.
+// Where tests, experiments and bench find what they run and read. Only places.cpp knows, so that all else compiles
+// alike in every folder and its objects come from the compiler's cache.
 
 #include <string>
 

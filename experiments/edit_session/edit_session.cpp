@@ -16,6 +16,7 @@
 #include "src/output/plot.h"
 #include "src/output/run_clock.h"
 #include "src/scene/scene_file.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -38,7 +39,7 @@ struct Drag {
 
 Drag drag(bool reduced) {
   Drag drag;
-  drag.scene = read_dynamic_scene(EXITANCE_SOURCE_DIR "/data/cube.toml", Emission::exitance).scene;
+  drag.scene = read_dynamic_scene(source_file("data/cube.toml"), Emission::exitance).scene;
   while (drag.scene.objects[drag.cube].name != "cube") ++drag.cube;
   drag.mesh = {drag.scene.mesh.patch_size, drag.scene.mesh.elements_per_edge, drag.scene.mesh.small_patch};
   if (reduced) {

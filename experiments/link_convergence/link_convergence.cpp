@@ -21,6 +21,7 @@
 #include "src/reference/comparison.h"
 #include "src/reference/reference_solution.h"
 #include "src/scene/reader.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -68,7 +69,7 @@ struct Tables {
 };
 
 void converge(const Question& question, Tables& tables) {
-  const Scene scene = read_scene(std::filesystem::path(EXITANCE_SOURCE_DIR) / "data" / (question.scene + ".toml"));
+  const Scene scene = read_scene(source_file("data/" + question.scene + ".toml"));
   std::optional<SolutionRecord> truth;
   if (!question.B) truth = reference(question, scene);
   PlotSeries all{question.label, {}}, worst{question.label + ", worst 1 %", {}, true},

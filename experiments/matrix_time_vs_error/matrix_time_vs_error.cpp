@@ -22,6 +22,7 @@
 #include "src/reference/matrix_comparison.h"
 #include "src/scene/furnished_room.h"
 #include "src/scene/reader.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -36,7 +37,7 @@ struct Subject {
 };
 
 std::vector<Subject> subjects() {
-  const auto read = [](const char* file) { return read_scene(std::string(EXITANCE_SOURCE_DIR "/data/") + file, {}); };
+  const auto read = [](const char* file) { return read_scene(source_file(std::string("data/") + file), {}); };
   const std::vector<double> all{1e-3, 1e-5, 1e-7, 1e-9};
   return {{"box room 1 m", read("box_on_floor.toml"), 1, all},
           {"box room 1/3 m", read("box_on_floor.toml"), 0.3334, all},

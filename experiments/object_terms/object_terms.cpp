@@ -17,6 +17,7 @@
 #include "src/output/run_clock.h"
 #include "src/scene/furnished_room.h"
 #include "src/scene/scene_file.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -52,7 +53,7 @@ Placement by(const Vec3& translation) {
 }
 
 Place cube_room(bool reduced) {
-  const DynamicScene file = read_dynamic_scene(EXITANCE_SOURCE_DIR "/data/cube.toml", Emission::exitance);
+  const DynamicScene file = read_dynamic_scene(source_file("data/cube.toml"), Emission::exitance);
   Place place{
       file.scene, {file.scene.mesh.patch_size, file.scene.mesh.elements_per_edge, file.scene.mesh.small_patch}, {}};
   if (reduced) place.mesh = {1.0, 1};
@@ -70,7 +71,7 @@ Place cube_room(bool reduced) {
 }
 
 Place furnished(bool reduced) {
-  const DynamicScene file = read_dynamic_scene(EXITANCE_SOURCE_DIR "/data/robot.toml", Emission::exitance);
+  const DynamicScene file = read_dynamic_scene(source_file("data/robot.toml"), Emission::exitance);
   const std::uint32_t polygons = reduced ? 100 : 1000;
   Place place{make_furnished_room(polygons, 7), {}, {}};
   Scene& scene = place.scene;

@@ -17,6 +17,7 @@
 #include "src/form_factor/pair_form_factor.h"
 #include "src/output/plot.h"
 #include "tests/form_factor/exchange_scenes.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -30,7 +31,7 @@ struct TruePair {
 
 /// Of lines "i,j,kind,F,error"; none where there is no file.
 std::vector<TruePair> read_truth(const std::string& scene) {
-  std::ifstream in(EXITANCE_SOURCE_DIR "/tests/form_factor/truth/" + scene + ".csv");
+  std::ifstream in(source_file("tests/form_factor/truth/" + scene + ".csv"));
   std::vector<TruePair> pairs;
   for (std::string line; std::getline(in, line);) {
     if (line.empty() || line[0] < '0' || line[0] > '9') continue;

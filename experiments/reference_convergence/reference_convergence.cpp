@@ -23,6 +23,7 @@
 #include "src/scene/reader.h"
 #include "src/solve/scene_solution.h"
 #include "src/visibility/shadow_rays.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -39,8 +40,8 @@ struct Question {
 constexpr std::size_t kAllLevels = std::numeric_limits<std::size_t>::max();
 
 std::vector<Question> questions() {
-  return {{"box_on_floor", read_scene(EXITANCE_SOURCE_DIR "/data/box_on_floor.toml"), 3e-3},
-          {"cornell_box_closed", read_scene(EXITANCE_SOURCE_DIR "/data/cornell_box_closed.toml"), 8e-3},
+  return {{"box_on_floor", read_scene(source_file("data/box_on_floor.toml")), 3e-3},
+          {"cornell_box_closed", read_scene(source_file("data/cornell_box_closed.toml")), 8e-3},
           {"furnished_room", make_furnished_room(100, 1), 2.5e-2, 0, 1e-3, 1e-8}};
 }
 

@@ -1,12 +1,13 @@
 // Figure 7 of George, Sillion and Greenberg (1990): a robot comes into a furnished room.
 
 #include "experiments/redistribution_race.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
 
 Race race(bool reduced) {
-  Race race{"Robot", read_dynamic_scene(EXITANCE_SOURCE_DIR "/data/robot.toml", Emission::exitance), {}};
+  Race race{"Robot", read_dynamic_scene(source_file("data/robot.toml"), Emission::exitance), {}};
   race.tolerance = 3e-4;
   race.column_memory = std::uint64_t{3} << 30;
   race.pictured = {5, 100};
@@ -15,7 +16,7 @@ Race race(bool reduced) {
   race.until = 0.01;
   race.most_seconds = 1200;
   if (reduced) {  // the robot in the room of the Cube
-    DynamicScene cube = read_dynamic_scene(EXITANCE_SOURCE_DIR "/data/cube.toml", Emission::exitance);
+    DynamicScene cube = read_dynamic_scene(source_file("data/cube.toml"), Emission::exitance);
     race.mesh = {1.0, 1};
     race.tolerance = 1e-6;
     Scene& into = cube.scene;

@@ -22,6 +22,7 @@
 #include "src/scene/furnished_room.h"
 #include "src/scene/reader.h"
 #include "src/solve/radiosity_system.h"
+#include "tests/places.h"
 
 namespace exitance {
 namespace {
@@ -33,7 +34,7 @@ struct Subject {
 };
 
 std::vector<Subject> subjects(bool reduced) {
-  const Scene box = read_scene(EXITANCE_SOURCE_DIR "/data/cornell_box_closed.toml", {});
+  const Scene box = read_scene(source_file("data/cornell_box_closed.toml"), {});
   if (reduced) return {{"Cornell box (reduced)", box, {0.4, 0.2}}};  // another reference: other errors
   return {{"Cornell box", box, {0.4, 0.2, 0.1, 0.05}}, {"furnished room", make_furnished_room(500, 1), {3, 1.5, 1}}};
 }

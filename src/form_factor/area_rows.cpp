@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "geometry/level.h"
 #include "src/form_factor/pair_sample.h"
 
 namespace exitance {
@@ -34,11 +33,9 @@ FormFactorMatrix sum_to_patches(const FormFactorMatrix& elements, const PatchMes
 bool may_be_covered(const PolygonSoup& soup, const Contacts& contacts, std::span<const PatchPiece> pieces) {
   return std::ranges::any_of(pieces, [&](const PatchPiece& piece) {
     const std::uint32_t f = piece.facet;
-    // Most that lie in one plane but for rounding only meet along an edge.
-    const auto overlaps = [&](std::uint32_t t) {
-      return std::ranges::binary_search(soup.coplanar(f), t) || are_level(soup, t, f, kLevel * soup.extent());
-    };
-    return std::ranges::any_of(contacts.covering(f), overlaps) || std::ranges::any_of(contacts.level_with(f), overlaps);
+    // Most that only touch the plane but for rounding meet it along an edge.
+    return std::ranges::any_of(contacts.covering(f),
+                               [&](std::uint32_t t) { return std::ranges::binary_search(soup.coplanar(f), t); });
   });
 }
 

@@ -12,8 +12,8 @@ namespace exitance {
 
 /// Where a solid stands on a receiver or a source, rounding has left some of the contact a gap and put some of it into
 /// the solid, from where points would see what else lies there: a source that pierces it. A contact is one whatever
-/// its rounding: what lies in it, and what lies within the solid, sees nothing of the other polygon. Contacts that are
-/// exact are none of these; Viewpoint knows them.
+/// its rounding: what lies in it, and what lies within the solid, sees nothing of the other polygon. Contacts that the
+/// soup knows (coplanar) are none of these; Viewpoint sees to them.
 class RoundedContact {
  public:
   /// Of closed solids among the items, of the soup's index, but for the one that the receiver bounds: its points are on

@@ -46,37 +46,14 @@ Lid lid_of(std::span<const Corner> corners, const Vec3& normal, bool against) {
   return lid;
 }
 
-/// Whether one of two facets lies before the other's front, exactly, wherever they overlap, as their corners tell.
-bool lies_before(const PolygonSoup& soup, std::uint32_t one, std::uint32_t other) {
-  StageCounts counts;
-  const auto all = [&](std::uint32_t corners_of, std::uint32_t plane_of, int side) {
-    return std::ranges::all_of(soup.corners(soup.facets()[corners_of]), [&](const Corner& c) {
-      return side * side_of(soup.facets()[plane_of].plane, c.at, counts) >= 0;
-    });
-  };
-  return all(one, other, 1) || all(other, one, -1);
-}
-
 }  // namespace
 
 bool Lid::covers(const Vec3& point) const {
-  if (!std::ranges::all_of(sides, [&](const HalfSpace& side) { return value(side, point) > 0; })) return false;
-  if (!uncertain) return true;
-  const auto& [a, b, c] = *uncertain;
-  StageCounts counts;
-  return orientation(a, b, c, point, counts) < 0;
+  return std::ranges::all_of(sides, [&](const HalfSpace& side) { return value(side, point) > 0; });
 }
 
 bool operator<(const Lid& a, const Lid& b) {
-  const auto keys = [](const Lid& lid) {
-    std::vector<std::array<double, 4>> all;
-    for (const HalfSpace& side : lid.sides) all.push_back(key(side));
-    if (lid.uncertain) {
-      for (const Vec3& v : *lid.uncertain) all.push_back({v.x, v.y, v.z, 0});
-    }
-    return all;
-  };
-  return keys(a) < keys(b);
+  return std::ranges::lexicographical_compare(a.sides, b.sides, {}, key, key);
 }
 
 std::vector<Lid> lids_on(const PolygonSoup& soup, const Contacts& contacts, std::uint32_t facet) {
@@ -87,18 +64,6 @@ std::vector<Lid> lids_on(const PolygonSoup& soup, const Contacts& contacts, std:
     const Facet& f = soup.facets()[t];
     lids.push_back(lid_of(soup.corners(f), normal, dot(f.plane.normal, normal) < 0));
   }
-  Loop whole;
-  for (const Corner& c : soup.corners(soup.facets()[facet])) whole.push_back(c.at);
-  const double area = area_of(whole);
-  for (const std::uint32_t t : contacts.level_with(facet)) {
-    Lid lid = lid_of(soup.corners(soup.facets()[t]), normal, false);
-    if (!overlaps(whole, area, lid)) continue;  // as most do, which only meet along an edge
-    if (!lies_before(soup, t, facet)) {
-      const PlanePoints& points = soup.facets()[t].plane.points;
-      lid.uncertain = {*points.a, *points.b, *points.c};
-    }
-    lids.push_back(std::move(lid));
-  }
   std::sort(lids.begin(), lids.end());
   return lids;
 }
@@ -106,7 +71,6 @@ std::vector<Lid> lids_on(const PolygonSoup& soup, const Contacts& contacts, std:
 double open_area(std::span<const Vec3> loop, double area, std::span<const Lid> lids) {
   std::vector<Loop> open{Loop(loop.begin(), loop.end())}, left;
   for (const Lid& lid : lids) {
-    if (lid.uncertain) continue;
     left.clear();
     for (Loop& piece : open) {
       if (!overlaps(piece, area, lid)) {

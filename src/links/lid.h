@@ -1,9 +1,7 @@
 #pragma once
 // What lies on a facet and covers some of it: there nothing is received, and nothing that is sent gets out.
 
-#include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,9 +15,6 @@ namespace exitance {
 /// the plane, are positive.
 struct Lid {
   std::vector<HalfSpace> sides;
-  /// Three points of a facet that lies in the plane but for rounding, and nowhere for certain before it: it takes no
-  /// area, but covers points that rounding has put behind it, from which nothing is seen.
-  std::optional<std::array<Vec3, 3>> uncertain;
 
   /// Whether a point of the plane lies under it; within the sides by double precision.
   bool covers(const Vec3& point) const;
@@ -32,7 +27,7 @@ struct Lid {
 std::vector<Lid> lids_on(const PolygonSoup& soup, const Contacts& contacts, std::uint32_t facet);
 
 /// Area [m²] of a convex polygon in the plane that no lid covers, in double precision; 0 or all of it where less than
-/// 2^-30 of it is missing to that. Lids may overlap each other; those that are uncertain cover none.
+/// 2^-30 of it is missing to that. Lids may overlap each other.
 double open_area(std::span<const Vec3> loop, double area, std::span<const Lid> lids);
 
 /// Whether a lid covers more than 2^-30 of the polygon's area [m²].

@@ -102,22 +102,6 @@ void LinkSight::set_shaft(std::uint32_t receiver, std::uint32_t source) {
   to.facet += facet_offset_[tree_.object_of(receiver)];
   from.facet += facet_offset_[tree_.object_of(source)];
   shaft_.reset(to, from);
-  level_ = {obstacles_.contacts().level_with(to.facet), obstacles_.contacts().level_with(from.facet)};
-}
-
-/// Of an item. Corners of nodes are rounded: what lies in the plane of one but for rounding may lie before them all and
-/// behind the points between, and never blocks.
-Shaft::Overlap LinkSight::overlap(std::uint32_t item) {
-  const Shaft::Overlap overlap = shaft_.overlap(item);
-  if (overlap != Shaft::Overlap::blocking || (level_[0].empty() && level_[1].empty())) return overlap;
-  const auto is_level = [&](std::uint32_t facet) {
-    return std::ranges::any_of(level_, [&](const auto& level) { return std::ranges::binary_search(level, facet); });
-  };
-  const PolygonSoup& soup = obstacles_.soup();
-  const auto facets = static_cast<std::uint32_t>(soup.facets().size());
-  const bool level =
-      item < facets ? is_level(item) : std::ranges::any_of(soup.shells()[item - facets].facets, is_level);
-  return level ? Shaft::Overlap::partial : overlap;
 }
 
 /// Of the items, what enters the shaft as it is set.
@@ -126,7 +110,7 @@ Sight LinkSight::select(std::span<const std::uint32_t> items) {
   sight.first = items_.size();
   chosen_.clear();
   for (const std::uint32_t item : items) {
-    const Shaft::Overlap of_item = overlap(item);
+    const Shaft::Overlap of_item = shaft_.overlap(item);
     if (of_item == Shaft::Overlap::outside) continue;
     chosen_.push_back(item);
     if (of_item == Shaft::Overlap::blocking) sight.state = Sight::State::blocked;
@@ -141,15 +125,12 @@ Sight LinkSight::between_roots(std::uint32_t receiver, std::uint32_t source) {
   const Lap lap(work_.seconds_shafts);
   set_shaft(receiver, source);
   const Shaft::Overlap most = shaft_.find_occluders(found_);
-  const auto blocks_alone = [&](std::uint32_t item) { return overlap(item) == Shaft::Overlap::blocking; };
-  const bool all_count = level_[0].empty() && level_[1].empty();
-  const bool blocks = most == Shaft::Overlap::blocking && (all_count || std::ranges::any_of(found_, blocks_alone));
   Sight sight;
   sight.first = items_.size();
   sight.count = found_.size();
-  sight.state = most == Shaft::Overlap::outside ? Sight::State::open
-                : blocks                        ? Sight::State::blocked
-                                                : Sight::State::partial;
+  sight.state = most == Shaft::Overlap::outside    ? Sight::State::open
+                : most == Shaft::Overlap::blocking ? Sight::State::blocked
+                                                   : Sight::State::partial;
   items_.insert(items_.end(), found_.begin(), found_.end());
   return sight;
 }

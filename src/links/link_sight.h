@@ -1,7 +1,6 @@
 #pragma once
 // What stands between the two nodes of a link, and what the one sees of the other.
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -110,7 +109,6 @@ class LinkSight {
 
  private:
   void set_shaft(std::uint32_t receiver, std::uint32_t source);
-  Shaft::Overlap overlap(std::uint32_t item);
   Sight select(std::span<const std::uint32_t> items);
   void keep_inherited(Sight& sight, const Sight& parent);
 
@@ -120,7 +118,6 @@ class LinkSight {
   std::vector<std::uint32_t> facet_offset_;  ///< by object: from the tree's numbers to the obstacles', modulo 2^32
   Shaft shaft_;
   std::pair<std::uint32_t, std::uint32_t> shaft_of_{kNone, kNone};  ///< the nodes whose it is
-  std::array<std::span<const std::uint32_t>, 2> level_;  ///< what lies in the planes of both ends but for rounding
   Viewpoint view_;
   std::vector<std::uint32_t> items_, found_, chosen_;
   std::vector<NodePoint> points_;

@@ -261,8 +261,7 @@ void PatchTree::set_open_area(std::uint32_t n, std::span<const Lid> before, std:
   points_left_open(node, options_.points_per_edge, before, points_before);
   if (!node.has_children()) {
     node.open_area = open_area(node.loop(), node.area, lids_here);
-    node.covered = node.open_area < node.area ||
-                   std::ranges::any_of(lids_here, [](const Lid& lid) { return lid.uncertain.has_value(); });
+    node.covered = node.open_area < node.area;
   } else {
     double open = 0;
     node.covered = false;

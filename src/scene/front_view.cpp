@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "geometry/contact.h"
-#include "geometry/level.h"
+#include "geometry/level_facets.h"
 #include "geometry/surface_pieces.h"
+#include "src/scene/patch_mesh.h"
 #include "src/scene/scene_check.h"
 
 namespace exitance {
@@ -21,8 +22,7 @@ bool sees_only_fronts(const Scene& scene) {
   if (!found.open_edges.empty() || !std::ranges::all_of(found.pieces, shows_its_front) ||
       !coplanar_overlaps(polygons).empty())
     return false;
-  const PolygonSoup soup(polygons);
-  return !any_are_level(soup, kLevel * soup.extent());
+  return !any_are_level(make_soup(scene));
 }
 
 }  // namespace exitance

@@ -628,7 +628,7 @@ PolygonSoup make_soup(const Scene& scene) {
     polygons.push_back(surface.polygon);
     roles.push_back(surface.obstruction_only ? Role::sheet : Role::patch);
   }
-  return PolygonSoup(polygons, roles);
+  return PolygonSoup(polygons, roles, {}, 0, Planes::rounded);
 }
 
 PatchMesh make_patch_mesh(const Scene& scene, const PolygonSoup& soup, const MeshOptions& options) {

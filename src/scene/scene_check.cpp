@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/contact.h"
+#include "geometry/level.h"
 #include "geometry/spatial_index.h"
 #include "geometry/surface_pieces.h"
 #include "src/scene/boundary_rings.h"
@@ -168,6 +169,7 @@ class SceneChecker {
       any_patch_ = any_patch_ || (defect == PolygonDefect::none && !scene_.surfaces[i].obstruction_only);
       surface_of_.push_back(i);
       polygons_.push_back(polygon);
+      near_ = std::max(near_, kLevel * extent(polygon));
       if (defect == PolygonDefect::none) check_planarity(i);
     }
   }
@@ -206,9 +208,10 @@ class SceneChecker {
       return std::ranges::lexicographical_compare(a, b, {}, order, order);
     };
     std::set<std::vector<Vec3>, decltype(compare)> seen(compare);
-    for (std::size_t i = 0; i < polygons_.size(); ++i) {
-      if (seen.insert(canonical(polygons_[i].outer)).second) continue;
-      add(FindingKind::duplicate_face, surface_of_[i], norm(area_vector(polygons_[i])));
+    for (std::uint32_t i = 0; i < polygons_.size(); ++i) {
+      const bool is_first = seen.insert(canonical(polygons_[i].outer)).second;
+      if (!is_first) add(FindingKind::duplicate_face, surface_of_[i], norm(area_vector(polygons_[i])));
+      if (is_first || !polygons_[i].holes.empty()) distinct_.push_back(i);
     }
   }
 
@@ -244,15 +247,18 @@ class SceneChecker {
     if (unbalanced) finding(FindingKind::non_manifold_edge).severity = Severity::warning;
   }
 
+  // Of what is there more than once, one: the others are told of as duplicates.
   void check_overlaps() {
-    for (const CoplanarOverlap& overlap : coplanar_overlaps(polygons_)) {
+    std::vector<Polygon> polygons;
+    for (const std::uint32_t i : distinct_) polygons.push_back(polygons_[i]);
+    for (const CoplanarOverlap& overlap : coplanar_overlaps(polygons, near_)) {
       const auto kind = overlap.same_facing ? FindingKind::overlap_same_facing : FindingKind::overlap_against;
-      add(kind, surface_of_[overlap.b], overlap.area);
+      add(kind, surface_of_[distinct_[overlap.b]], overlap.area);
     }
   }
 
   void check_pieces() {
-    const SurfacePieces found = find_surface_pieces(polygons_);
+    const SurfacePieces found = find_surface_pieces(polygons_, near_);
     report_.pieces = found.pieces.size();
     report_.watertight = !found.pieces.empty();
     for (const auto& [edge, in_contact] : found.open_edges) {
@@ -307,11 +313,13 @@ class SceneChecker {
 
   const Scene& scene_;
   bool emits_ = false, any_patch_ = false;
+  double near_ = 0;  // what lies no farther apart is in contact [m]
   std::set<std::uint32_t> open_objects_;
   SceneReport report_;
   std::map<FindingKind, Finding> findings_;
   std::vector<Polygon> polygons_;          // those that geometry can work with
   std::vector<std::uint32_t> surface_of_;  // and the surfaces they are of
+  std::vector<std::uint32_t> distinct_;    // of them, without those that are there already
 };
 
 }  // namespace
@@ -332,7 +340,7 @@ bool is_closed(const Scene& scene) {
   std::vector<Polygon> polygons;
   polygons.reserve(scene.surfaces.size());
   for (const Surface& surface : scene.surfaces) polygons.push_back(surface.polygon);
-  return encloses_all(find_surface_pieces(polygons),
+  return encloses_all(find_surface_pieces(polygons, kLevel * extent(scene)),
                       [&](std::uint32_t polygon) -> const Surface& { return scene.surfaces[polygon]; });
 }
 

@@ -23,7 +23,8 @@ enum class FindingKind {
   open_edge,          ///< an edge that no other cancels and that ends on no surface; `amount` is their length [m]
   boundary_ring,  ///< a ring that bounds the mesh of an object with open edges (boundary_rings.h); `amount` likewise
   contact_edge,   ///< an edge that no other cancels, but that ends on a surface; `amount` likewise
-  overlap_same_facing,  ///< two faces in one plane, one lying on the other; `amount` is the area in common [m²]
+  overlap_same_facing,  ///< two faces in one plane (but for rounding: level.h), one lying on the other, no duplicates;
+                        ///< `amount` is the area in common [m²]
   overlap_against,      ///< two faces in one plane in contact, front to front or back to back; `amount` likewise
   inside_out,           ///< a closed piece of surface that seems to face the wrong way; `amount` is its area [m²]
   single_sheet,         ///< an open piece of surface within the scene, dark from behind; `amount` likewise
@@ -74,8 +75,8 @@ SceneReport check_scene(const Scene& scene);
 
 /// Whether the surfaces bound a volume that the patches face, so that no light escapes: there is a closed piece of
 /// surface whose fronts look in (a room), and every other piece with patches is such a room too or lies within one.
-/// Edges must cancel exactly (T-junctions allowed) or end on the surface of another piece (contact: a box without a
-/// bottom on a floor). What stands within a room may be open: it lets nothing out. Takes a second or so for 60,000
+/// Edges must cancel (T-junctions allowed) or end on the surface of another piece (contact: a box without a bottom on a
+/// floor), but for the rounding of turned scenes (level.h). What stands within a room may be open: it lets nothing out. Takes a second or so for 60,000
 /// polygons. REQUIRES: polygons without defects but zero area, as read_scene returns them.
 bool is_closed(const Scene& scene);
 

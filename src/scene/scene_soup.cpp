@@ -39,7 +39,7 @@ PolygonSoup make_soup(const EditedScene& scene, std::span<const std::uint32_t> o
   Surfaces all;
   for (const std::uint32_t object : order) all.add(scene, object);
   const auto count = static_cast<std::uint32_t>(all.polygons.size());
-  return PolygonSoup(all.polygons, all.roles, all.ranks, std::max(kLeastSpare, count));
+  return PolygonSoup(all.polygons, all.roles, all.ranks, std::max(kLeastSpare, count), Planes::rounded);
 }
 
 PolygonSoup soup_after(const PolygonSoup& before, PolygonSoup::PolygonRange gone, const EditedScene& scene,

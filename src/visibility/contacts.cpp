@@ -14,10 +14,6 @@ bool face_against(const Plane& a, const Plane& b) {
   return dot(a.normal, b.normal) < -0.5 * norm(a.normal) * norm(b.normal);
 }
 
-bool face_alike(const Plane& a, const Plane& b) {
-  return dot(a.normal, b.normal) > 0.5 * norm(a.normal) * norm(b.normal);
-}
-
 }  // namespace
 
 bool lies_within(const PolygonSoup& soup, std::uint32_t facet, const Vec3& point) {
@@ -55,14 +51,10 @@ Contacts::LyingOn Contacts::find_lying_on(std::uint32_t f) const {
     const bool of_solid = soup_->role(facets[t].polygon) != Role::sheet && face_against(facets[t].plane, plane);
     (of_solid ? found.burying : found.overlying).push_back(t);
   }
-  const Vec3 margin{near_, near_, near_};
   Box around;
-  for (const Corner& c : soup_->corners(facets[f])) {
-    around.extend(c.at - margin);
-    around.extend(c.at + margin);
-  }
+  for (const Corner& c : soup_->corners(facets[f])) around.extend(c.at);
   std::vector<std::uint32_t> items, near;
-  soup_->index().find(around, items);
+  soup_->index().find(around.grown(near_), items);
   for (const std::uint32_t item : items) {
     if (item < facets.size()) {
       near.push_back(item);
@@ -74,12 +66,9 @@ Contacts::LyingOn Contacts::find_lying_on(std::uint32_t f) const {
   std::ranges::sort(near);
   for (const std::uint32_t t : near) {
     if (t == f || std::ranges::binary_search(coplanar, t)) continue;
-    if (face_against(facets[t].plane, plane)) {
-      if (reaches(t, plane) && !are_sides_of_a_sheet(facets[t].polygon, facets[f].polygon)) found.touching.push_back(t);
-    } else if (facets[t].polygon != facets[f].polygon && face_alike(facets[t].plane, plane) &&
-               (lies_in(t, plane) || lies_in(f, facets[t].plane))) {
-      found.level.push_back(t);
-    }
+    if (face_against(facets[t].plane, plane) && reaches(t, plane) &&
+        !are_sides_of_a_sheet(facets[t].polygon, facets[f].polygon))
+      found.touching.push_back(t);
   }
   return found;
 }

@@ -25,9 +25,10 @@ class Contacts {
   /// Of a soup that an edit made from that of `before`: takes time by what changed.
   Contacts(const Contacts& before, const PolygonSoup& soup);
 
-  /// Whether something that faces the facet lies against it at this point of it up to rounding, but not exactly: within
-  /// 2^-49 of the scene's extent, as contacts of turned solids do. The corners of patches are rounded to some 2^-52 of
-  /// it; seen from so near, patches would leave gaps and overlap. On an edge of what lies there: yes.
+  /// Whether something that faces the facet, and does not count as in its plane (PolygonSoup::coplanar), lies against it
+  /// at this point of it: within 2^-49 of the scene's extent, as turned solids do where their contacts are narrow. The
+  /// corners of patches are rounded to some 2^-52 of it; seen from so near, patches would leave gaps and overlap. On an
+  /// edge of what lies there: yes.
   bool touched(std::uint32_t facet, const Vec3& point) const;
 
   /// Whether anything lies on the facet at this point of it, computed with some roundings; on its edges, too.
@@ -35,15 +36,10 @@ class Contacts {
   /// Whether something does with open space before it: a later surface that faces the same way, or a sheet.
   bool overlaid(std::uint32_t facet, const Vec3& point) const;
   bool may_be_overlaid(std::uint32_t facet) const { return !lying_on_[facet].overlying.empty(); }
-  bool may_be_covered(std::uint32_t facet) const {
-    return may_be_overlaid(facet) || burying_count(facet) > 0 || !level_with(facet).empty();
-  }
-  /// The facets that cover some of it by lying in its plane, exactly or, against it, nearly, in no particular order;
-  /// but for those that are level_with it.
+  bool may_be_covered(std::uint32_t facet) const { return may_be_overlaid(facet) || burying_count(facet) > 0; }
+  /// The facets that cover some of it by lying in its plane (PolygonSoup::coplanar) or, against it, nearly, in no
+  /// particular order.
   std::vector<std::uint32_t> covering(std::uint32_t facet) const;
-  /// The facets of other polygons that face the same way and lie in its plane but for rounding, not exactly, ascending:
-  /// of two of these the one hides the other that lies before it, here the one and there the other where they cross.
-  std::span<const std::uint32_t> level_with(std::uint32_t facet) const { return lying_on_[facet].level; }
 
   /// The contacts of two facets, between points of which nothing else stands.
   class Pair {
@@ -72,11 +68,11 @@ class Contacts {
   bool reaches(std::uint32_t facet, const Plane& plane) const;
   bool lies_in(std::uint32_t facet, const Plane& plane) const;
 
-  /// The facets that lie on one: against it up to rounding; exactly, solids; exactly, others; and level_with it.
+  /// The facets that lie on one: against it up to rounding; of what counts as in its plane, solids, and others.
   struct LyingOn {
-    std::vector<std::uint32_t> touching, burying, overlying, level;
+    std::vector<std::uint32_t> touching, burying, overlying;
 
-    bool empty() const { return touching.empty() && burying.empty() && overlying.empty() && level.empty(); }
+    bool empty() const { return touching.empty() && burying.empty() && overlying.empty(); }
   };
   LyingOn find_lying_on(std::uint32_t facet) const;
 

@@ -19,8 +19,8 @@ struct PointRowStatistics {
   PairCounts pairs;
   StageCounts stages;          ///< of exact predicates
   std::uint64_t extended = 0;  ///< pairs that needed extended precision
-  /// Points that see no front of anything: covered by, or buried in, a contact, which may hold up to rounding (2^-49 of
-  /// the extent). They have no closure defect.
+  /// Points that see no front of anything: covered by, or buried in, a contact, which may hold but for rounding. They
+  /// have no closure defect.
   std::uint64_t covered_points = 0;
   /// Largest |front + back − 1| of all points that see something, front and back sides of patches and of surfaces that
   /// only obstruct: the defect of a closed scene, without meaning in an open one. Shadow rays ask for fronts alone.

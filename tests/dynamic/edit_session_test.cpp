@@ -368,6 +368,31 @@ TEST(EditSession, WithoutTheLogWhatWasInterruptedStaysWrong) {
   EXPECT_GT(distance(session.solution()), 1e-4);
 }
 
+// 0.1 + 0.2 is an ulp more than 0.3: the sheet lies in the lamp's plane but for rounding, and covers it.
+TEST(EditSession, WhatComesToLieOnALampButForRoundingCoversIt) {
+  ASSERT_NE(0.1 + 0.2, 0.3);
+  Scene scene = test_room();
+  Surface lamp;
+  lamp.polygon.outer = {{0.2, 0.2, 0.3}, {0.9, 0.2, 0.3}, {0.9, 0.9, 0.3}, {0.2, 0.9, 0.3}};
+  lamp.material = 1;
+  scene.surfaces.insert(scene.surfaces.begin() + 6, lamp);
+  Surface sheet = lamp;
+  for (Vec3& v : sheet.polygon.outer) v.z = 0.1;
+  sheet.object = static_cast<std::uint32_t>(scene.objects.size());
+  sheet.material = 2;
+  scene.objects.push_back({"sheet on the lamp", ""});
+  scene.surfaces.push_back(sheet);
+  for (const SessionOptions& options : {plain(), shooting()}) {
+    EditSession session(scene, options);
+    session.work({});
+    const double before = session.solution().element_B()[0];
+    session.apply(moved(sheet.object, {0, 0, 0.2}));
+    EXPECT_TRUE(session.work({}).finished);
+    EXPECT_LT(distance(session.solution()), 1e-10);
+    EXPECT_NE(session.solution().element_B()[0], before);
+  }
+}
+
 /// Random edits, some of an object that is selected, with few shots after each.
 class RandomSession {
  public:

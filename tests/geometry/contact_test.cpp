@@ -91,6 +91,37 @@ TEST(Contact, HolesAndConcavePolygonsCountOnlyTheirArea) {
   EXPECT_DOUBLE_EQ(overlaps[1].area, 1);
 }
 
+TEST(Contact, WithinRoundingWhereAskedFor) {
+  constexpr double kNear = 0x1p-47 * 3;
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  const auto turned = [&](Polygon p) {
+    for (Vec3& v : p.outer) {
+      const Vec3 q{c * v.x - s * v.y, s * v.x + c * v.y, v.z};
+      v = {q.x, c * q.y - s * q.z, s * q.y + c * q.z};
+    }
+    return p;
+  };
+  const Polygon floor = square({0, 0, 1}, {3, 0, 0}, {0, 3, 0}),
+                bottom = reversed(square({1, 1, 1}, {1, 0, 0}, {0, 1, 0})),
+                rug = square({2, 2, 1}, {2, 0, 0}, {0, 0.5, 0}),
+                above = square({0, 0, 1 + 1e-12}, {1, 0, 0}, {0, 1, 0}),
+                beside = square({3, 0, 1}, {1, 0, 0}, {0, 3, 0});
+  std::vector<Polygon> scene;
+  for (const Polygon& p : {floor, bottom, rug, above, beside}) scene.push_back(turned(p));
+  EXPECT_LT(coplanar_overlaps(scene).size(), 2u) << "where planes must be one exactly";
+  const auto overlaps = coplanar_overlaps(scene, kNear);
+  ASSERT_EQ(overlaps.size(), 3u);
+  EXPECT_EQ(overlaps[0].b, 1u);
+  EXPECT_NEAR(overlaps[0].area, 1, 1e-12);
+  EXPECT_FALSE(overlaps[0].same_facing);
+  EXPECT_EQ(overlaps[1].b, 2u);
+  EXPECT_NEAR(overlaps[1].area, 0.5, 1e-12);
+  EXPECT_TRUE(overlaps[1].same_facing);
+  EXPECT_EQ(overlaps[2].a, 2u);
+  EXPECT_EQ(overlaps[2].b, 4u);
+  EXPECT_NEAR(overlaps[2].area, 0.5, 1e-12);
+}
+
 /// The rounded normals of needles have no digit left. Area in units of the last place: these are halves of triangles of
 /// which two corners lie on a line through the origin and the third an ulp beside it.
 TEST(Contact, NeedlesHaveAreas) {

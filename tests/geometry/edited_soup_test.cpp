@@ -44,8 +44,8 @@ struct Objects {
   List all() const { return list(0, static_cast<std::uint32_t>(faces.size())); }
 };
 
-PolygonSoup fresh(const Objects::List& list) {
-  return PolygonSoup(list.polygons, list.roles, list.ranks, 400);
+PolygonSoup fresh(const Objects::List& list, Planes planes = Planes::as_written) {
+  return PolygonSoup(list.polygons, list.roles, list.ranks, 400, planes);
 }
 
 /// One soup's facets in another, of the same objects.
@@ -143,6 +143,15 @@ Faces placed(const Faces& faces, double turn, const Vec3& to) {
   return result;
 }
 
+/// About the axis of x.
+Faces tilted(Faces faces, double angle) {
+  for (Polygon& face : faces) {
+    for (Vec3& p : face.outer)
+      p = {p.x, std::cos(angle) * p.y - std::sin(angle) * p.z, std::sin(angle) * p.y + std::cos(angle) * p.z};
+  }
+  return faces;
+}
+
 /// A room 4 × 4 × 4 (object 0), an open cover (a box without its bottom, 1), a table (2) on its floor, and four solids
 /// that come and go: two boxes, an L, a vase.
 class EditedRoom : public testing::Test {
@@ -178,24 +187,23 @@ class EditedRoom : public testing::Test {
     return faces;
   }
 
-  Objects objects_;
-};
-
-TEST_F(EditedRoom, EqualsOneMadeAnewAfterRandomEdits) {
-  for (const std::uint32_t seed : {1u, 2u, 3u}) {
+  void expect_edits_to_equal_those_made_anew(std::uint32_t seed, Planes planes, double tilt) const {
     std::mt19937 random(seed);
     Objects objects = objects_;
+    for (auto& faces : objects.faces) {
+      if (faces) faces = tilted(*faces, tilt);
+    }
     Objects::List all = objects.all();
-    std::optional<PolygonSoup> soup(fresh(all));
+    std::optional<PolygonSoup> soup(fresh(all, planes));
     std::vector<Range> ranges = all.of_object;
     int shared = 0;
     for (int k = 0; k < 40; ++k) {
       const std::uint32_t object = std::uniform_int_distribution<std::uint32_t>(1, 6)(random);
       if (object == 2) continue;
       const bool goes = objects.faces[object] && std::uniform_int_distribution<int>(0, 3)(random) == 0;
-      objects.faces[object] = goes ? std::nullopt : std::optional(random_place(object, random));
+      objects.faces[object] = goes ? std::nullopt : std::optional(tilted(random_place(object, random), tilt));
       all = objects.all();
-      PolygonSoup anew = fresh(all);
+      PolygonSoup anew = fresh(all, planes);
       auto edited = PolygonSoup::edited(*soup, ranges[object], objects.list(object, object + 1).arrival());
       if (!edited) {
         soup.emplace(std::move(anew));
@@ -212,6 +220,17 @@ TEST_F(EditedRoom, EqualsOneMadeAnewAfterRandomEdits) {
     }
     EXPECT_GE(shared, 10);
   }
+
+  Objects objects_;
+};
+
+TEST_F(EditedRoom, EqualsOneMadeAnewAfterRandomEdits) {
+  for (const std::uint32_t seed : {1u, 2u, 3u}) expect_edits_to_equal_those_made_anew(seed, Planes::as_written, 0);
+}
+
+TEST_F(EditedRoom, EqualsOneMadeAnewWhereItIsTurned) {
+  for (const std::uint32_t seed : {4u, 5u, 6u})
+    expect_edits_to_equal_those_made_anew(seed, Planes::rounded, 0.3 + 0.1 * seed);
 }
 
 /// Two edits of one soup know nothing of each other, and the soup stays as it was.
@@ -300,6 +319,27 @@ TEST_F(EditedRoom, MustBeMadeAnewWhereAnEditConcernsOthers) {
   ranges[5] = after->arrived();
   std::mt19937 random(1);
   expect_same(*after, anew, facet_map(*after, ranges, anew, list.of_object), random);
+}
+
+/// Two boxes on the table, of which one is level with its top and with the other, and these two are not.
+TEST_F(EditedRoom, MustBeMadeAnewWhereAPileChanges) {
+  constexpr double kStep = 0.9 * 0x1p-47 * 4;
+  Objects objects = objects_;
+  objects.faces[3] = placed(shape(3), 0.3, {1.8, 1.6, 1 + kStep});
+  const Objects::List pair = objects.all();
+  const PolygonSoup base = fresh(pair, Planes::rounded);
+  const auto comes = [&](int steps) {
+    Objects with = objects;
+    with.faces[4] = placed(shape(4), 0.4, {1.9, 1.7, 1 + steps * kStep});
+    return PolygonSoup::edited(base, {}, with.list(4, 5).arrival()).has_value();
+  };
+  EXPECT_TRUE(comes(1));
+  EXPECT_FALSE(comes(2));
+  objects.faces[4] = placed(shape(4), 0.4, {1.9, 1.7, 1 + 2 * kStep});
+  const Objects::List three = objects.all();
+  const PolygonSoup pile = fresh(three, Planes::rounded);
+  EXPECT_FALSE(PolygonSoup::edited(pile, three.of_object[3], {}));
+  EXPECT_TRUE(PolygonSoup::edited(base, pair.of_object[3], {}));
 }
 
 TEST(EditedSoup, TheFirstPatchThatLiesAgainstAnotherIsNoneOfIt) {

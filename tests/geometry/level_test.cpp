@@ -1,6 +1,4 @@
-// Facets that lie in one plane but for rounding.
-
-#include "geometry/level.h"
+// Facets that lie in one plane but for rounding, and what a soup makes of them.
 
 #include <gtest/gtest.h>
 
@@ -11,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry/level_facets.h"
 #include "geometry/polygon_soup.h"
 
 namespace exitance {
@@ -33,10 +32,10 @@ Loop turned_over(Loop loop) {
 }
 
 /// Turned ones are cut into triangles; the first is asked about, unless any is asked for.
-PolygonSoup soup_of(const std::vector<Loop>& loops) {
+PolygonSoup soup_of(const std::vector<Loop>& loops, Planes planes = Planes::as_written) {
   std::vector<Polygon> polygons;
   for (const Loop& loop : loops) polygons.push_back({loop, {}});
-  return PolygonSoup(polygons);
+  return PolygonSoup(polygons, {}, {}, 0, planes);
 }
 
 /// Whether any facet of one polygon is level with any of the other, asked in both orders, which must agree.
@@ -114,6 +113,16 @@ TEST(Level, IsTheSameWhenAllIsTurned) {
   }
 }
 
+// It overlaps the floor by a hair, within which it rises by nothing, and beyond the floor by much more than that.
+TEST(Level, IsNoRampThatBeginsOnTheFloor) {
+  const Loop floor = rectangle(-2, -2, 2, 2);
+  for (const double slope : {1e-8, -1e-8, 1e-10}) {
+    const double from = 2 - 1e-7, to = 4, rise = slope * (to - from);
+    EXPECT_FALSE(level(floor, {{from, -2, 0}, {to, -2, rise}, {to, 2, rise}, {from, 2, 0}}, kNear)) << slope;
+  }
+  EXPECT_TRUE(level(floor, rectangle(2 - 1e-7, -2, 4, 2, 0x1p-52), kNear));
+}
+
 // The corners of either lie far off the plane of the other, which a hair's breadth does not tell well.
 TEST(Level, OfHairsThatCross) {
   std::mt19937_64 random(6);
@@ -169,9 +178,63 @@ TEST(Level, IsNotWhatMeetsAtATJunctionFarFromTheOrigin) {
 
 TEST(Level, OfAnyPairOfASoup) {
   const Loop floor = rectangle(-2, -2, 2, 2), wall = {{2, -2, 0}, {2, 2, 0}, {2, 2, 3}, {2, -2, 3}};
-  EXPECT_FALSE(any_are_level(soup_of({floor, wall}), kNear));
-  EXPECT_TRUE(any_are_level(soup_of({floor, wall, rectangle(-1, -1, 1, 1, 0x1p-52)}), kNear));
-  EXPECT_FALSE(any_are_level(soup_of({}), kNear));
+  EXPECT_FALSE(any_are_level(soup_of({floor, wall}, Planes::rounded)));
+  EXPECT_TRUE(any_are_level(soup_of({floor, wall, rectangle(-1, -1, 1, 1, 0x1p-52)}, Planes::rounded)));
+  EXPECT_TRUE(any_are_level(soup_of({floor, rectangle(-1, -1, 1, 1)}, Planes::rounded)));
+  EXPECT_FALSE(any_are_level(soup_of({rectangle(-2, -2, 0, 2), rectangle(0, -2, 2, 2)}, Planes::rounded)));
+  EXPECT_FALSE(any_are_level(soup_of({}, Planes::rounded)));
+}
+
+/// Whether polygon 1 counts as in the plane of polygon 0, and that of 0 in that of 1.
+bool in_one_plane(const PolygonSoup& soup) {
+  const bool there = std::ranges::binary_search(soup.coplanar(0), soup.first_facet(1));
+  EXPECT_EQ(std::ranges::binary_search(soup.coplanar(soup.first_facet(1)), 0u), there);
+  return there;
+}
+
+TEST(Level, CountsAsInOnePlaneWhereASoupSaysSo) {
+  const Loop floor = rectangle(-2, -2, 2, 2), rug = rectangle(-1, -1, 1, 1, 0x1p-52);
+  EXPECT_FALSE(in_one_plane(soup_of({floor, rug})));
+  EXPECT_TRUE(in_one_plane(soup_of({floor, rug}, Planes::rounded)));
+  EXPECT_TRUE(in_one_plane(soup_of({floor, turned_over(rug)}, Planes::rounded)));
+  EXPECT_FALSE(in_one_plane(soup_of({floor, rectangle(-1, -1, 1, 1, 0x1p-45)}, Planes::rounded)));
+  const PolygonSoup soup = soup_of({floor, rug}, Planes::rounded);
+  EXPECT_TRUE(soup.covers(1, 0));
+  EXPECT_FALSE(soup.covers(0, 1));
+}
+
+/// A convex wedge on the floor whose toe, a hair, is level with it; behind that it rises before the floor.
+TEST(Level, OfAHairTellsNothingOfTheSolidBehindIt) {
+  const std::vector<Vec3> section = {{0, 0, 0}, {5e-14, 0, 1.2e-14}, {1, 0, 0.2}, {1, 0, 0}};
+  const auto at = [&](std::size_t k, double y) { return section[k % 4] + Vec3{0, y, 0}; };
+  std::vector<Loop> loops{rectangle(-2, -2, 2, 2)};
+  for (std::size_t k = 0; k < 4; ++k) loops.push_back({at(k, -1), at(k + 1, -1), at(k + 1, 1), at(k, 1)});
+  loops.push_back({at(3, -1), at(2, -1), at(1, -1), at(0, -1)});
+  loops.push_back({at(0, 1), at(1, 1), at(2, 1), at(3, 1)});
+  const PolygonSoup soup = soup_of(loops, Planes::rounded);
+  ASSERT_EQ(soup.shells().size(), 1u);
+  ASSERT_TRUE(soup.shells()[0].convex);
+  const std::uint32_t toe = soup.first_facet(1);
+  ASSERT_TRUE(are_level(soup, toe, 0, soup.level()));
+  EXPECT_FALSE(backs(soup, soup.shells()[0], toe, 0, 1));
+}
+
+TEST(Level, OfABoxUnderAFloorTellsThatItIsBehind) {
+  const double low = -1, z = 0x1p-52;
+  const std::vector<Loop> box = {
+      {{0, 0, low}, {0, 1, low}, {1, 1, low}, {1, 0, low}}, {{0, 0, z}, {1, 0, z}, {1, 1, z}, {0, 1, z}},
+      {{0, 0, low}, {1, 0, low}, {1, 0, z}, {0, 0, z}},     {{0, 1, low}, {0, 1, z}, {1, 1, z}, {1, 1, low}},
+      {{0, 0, low}, {0, 0, z}, {0, 1, z}, {0, 1, low}},     {{1, 0, low}, {1, 1, low}, {1, 1, z}, {1, 0, z}}};
+  for (const int side : {1, -1}) {
+    const Loop floor = rectangle(-2, -2, 2, 2);
+    std::vector<Loop> loops{side > 0 ? floor : turned_over(floor)};
+    loops.insert(loops.end(), box.begin(), box.end());
+    const PolygonSoup soup = soup_of(loops, Planes::rounded);
+    ASSERT_EQ(soup.shells().size(), 1u);
+    const std::uint32_t top = soup.first_facet(2);
+    EXPECT_TRUE(are_level(soup, top, 0, soup.level()));
+    EXPECT_TRUE(backs(soup, soup.shells()[0], top, 0, side));
+  }
 }
 
 }  // namespace

@@ -47,7 +47,8 @@ std::vector<Polygon> turned(std::vector<Polygon> faces) {
   return faces;
 }
 
-/// Closedness knows no tolerance: however thin, a box encloses something, and the two sides of a sheet nothing.
+/// Closedness knows no tolerance unless it is told one: however thin, a box encloses something, and the two sides of a
+/// sheet nothing.
 TEST(SurfacePieces, ThinRoomsAndTheTwoSidesOfASheet) {
   for (const double thickness : {1e-3, 1e-12, 1e-15}) {
     for (const auto& faces : {box({0, 0, 0}, {3, 2, thickness}), turned(box({-1.5, -1, 0}, {1.5, 1, thickness}))}) {
@@ -61,6 +62,16 @@ TEST(SurfacePieces, ThinRoomsAndTheTwoSidesOfASheet) {
   const auto sheet = find_surface_pieces(one_side + std::vector<Polygon>{reversed(one_side[0])});
   EXPECT_TRUE(sheet.pieces[0].closed);
   EXPECT_EQ(sheet.pieces[0].volume, 0);
+}
+
+TEST(SurfacePieces, WhatIsNoThickerThanNearBoundsNothing) {
+  constexpr double kNear = 1e-13;
+  for (const double thickness : {0.5 * kNear, 0.9 * kNear, 1.5 * kNear, 1e-9}) {
+    const auto slab = find_surface_pieces(turned(box({-1.5, -1, 0}, {1.5, 1, thickness})), kNear);
+    ASSERT_EQ(slab.pieces.size(), 1u);
+    EXPECT_TRUE(slab.pieces[0].closed);
+    EXPECT_EQ(slab.pieces[0].volume > 0, thickness > kNear) << thickness;
+  }
 }
 
 TEST(SurfacePieces, ARoomAndABoxInIt) {
@@ -186,6 +197,76 @@ TEST(SurfacePieces, SheetsBoundNothing) {
   const auto single = find_surface_pieces(room({0, 0, 0}, {3, 3, 3}) + sheet);
   EXPECT_FALSE(single.pieces.at(1).closed);
   EXPECT_TRUE(single.pieces[1].enclosed);
+}
+
+/// Turned by no simple angle, the rim of a box without a bottom ends on the floor but for rounding, and the two sides
+/// of a sheet, which are cut along other diagonals, enclose some roundings.
+TEST(SurfacePieces, ContactsMayHoldNearly) {
+  constexpr double kNear = 0x1p-47 * 3;
+  const Polygon sheet{{{1, 0.25, 1}, {2, 0.25, 1}, {2, 0.25, 2}, {1, 0.25, 2}}, {}};
+  Polygon back = reversed(sheet);
+  std::ranges::rotate(back.outer, back.outer.begin() + 1);
+  const auto standing = without(box({1, 1, 0}, {2, 2, 1}), 0), floating = without(box({1, 1, 1e-9}, {2, 2, 1}), 0),
+             leaning = without(box({2, 2, 0}, {3 + 1e-9, 3, 1}), 0);
+  const auto shell = room({0, 0, 0}, {3, 3, 3});
+  int open = 0;
+  for (const double angle : {0.0, 0.3, 0.7, 1.1, 1.9, 2.3}) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    const auto place = [&](std::vector<Polygon> faces) {
+      for (Polygon& face : faces) {
+        for (Vec3& p : face.outer) {
+          const Vec3 q{c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+          p = {q.x, c * q.y - s * q.z, s * q.y + c * q.z};
+        }
+      }
+      return faces;
+    };
+    const auto near = [&](const std::vector<Polygon>& faces) { return find_surface_pieces(place(faces), kNear); };
+    open += !find_surface_pieces(place(shell + standing)).pieces.at(1).closed;
+    EXPECT_TRUE(near(shell + standing).pieces.at(1).closed) << angle;
+    EXPECT_NEAR(near(shell + standing).pieces.at(1).volume, 1, 1e-12) << angle;
+    EXPECT_FALSE(near(shell + floating).pieces.at(1).closed) << angle;
+    EXPECT_FALSE(near(shell + leaning).pieces.at(1).closed) << angle;
+    EXPECT_EQ(near(shell + std::vector<Polygon>{sheet, back}).pieces.at(1).volume, 0) << angle;
+    EXPECT_NEAR(near(shell).pieces.at(0).volume, -27, 1e-12) << angle;
+  }
+  EXPECT_GT(open, 0) << "where contacts must be exact";
+}
+
+/// A vertex on an edge, turned, lies beside it; what is farther off than rounding brings it is no T-junction.
+TEST(SurfacePieces, TJunctionsMayHoldNearly) {
+  constexpr double kNear = 0x1p-47 * 3;
+  const auto parted_at = [](double z) {
+    std::vector<Polygon> faces = without(box({0, 0, 0}, {1, 2, 3}), 5);
+    faces.push_back({{{1, 0, 0}, {1, 2, 0}, {1, 2, z}, {1, 0, z}}, {}});
+    faces.push_back({{{1, 0, z}, {1, 2, z}, {1, 2, 3}, {1, 0, 3}}, {}});
+    return faces;
+  };
+  std::vector<Polygon> ajar = parted_at(1);
+  ajar.back().outer[0].x += 1e-9;
+  int open = 0;
+  for (const double angle : {0.3, 0.7, 1.1, 1.9, 2.3}) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    const auto place = [&](std::vector<Polygon> faces) {
+      for (Polygon& face : faces) {
+        for (Vec3& p : face.outer) {
+          const Vec3 q{c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+          p = {q.x, c * q.y - s * q.z, s * q.y + c * q.z};
+        }
+      }
+      return faces;
+    };
+    for (const double z : {1.0, 2.7}) {
+      const auto found = find_surface_pieces(place(parted_at(z)), kNear);
+      ASSERT_EQ(found.pieces.size(), 1u) << angle;
+      EXPECT_TRUE(found.pieces[0].closed) << angle;
+      EXPECT_TRUE(found.open_edges.empty()) << angle;
+      EXPECT_NEAR(found.pieces[0].volume, 6, 1e-12) << angle;
+      open += !find_surface_pieces(place(parted_at(z))).pieces[0].closed;
+    }
+    EXPECT_FALSE(find_surface_pieces(place(ajar), kNear).pieces[0].closed) << angle;
+  }
+  EXPECT_GT(open, 0) << "where vertices must lie on edges exactly";
 }
 
 TEST(SurfacePieces, HolesMayRunEitherWay) {

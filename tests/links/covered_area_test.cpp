@@ -113,8 +113,8 @@ TEST(CoveredArea, IsExactWhereThingsLieOnOthers) {
   EXPECT_EQ(open_area_of(links, 2, kBottom), 0);
 }
 
-// Which of two sheets lies before the other is then a matter of rounding, here this one and there that. What is seen of
-// either has B = 2 in this furnace.
+// Which of two sheets lies before the other is then a matter of rounding, here this one and there that; the later one
+// covers the other all the same. What is seen of either has B = 2 in this furnace.
 TEST(CoveredArea, OfSheetsInOnePlaneButForRounding) {
   for (const double degrees : {0.0, 33.0}) {
     SCOPED_TRACE(degrees);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "src/scene/furnished_room.h"
@@ -101,6 +102,39 @@ TEST_F(SceneCheck, Contacts) {
   EXPECT_EQ(find(report, FindingKind::overlap_same_facing)->places.at(0).surface, 12u);
   EXPECT_TRUE(report.closed);
   EXPECT_FALSE(find(report, FindingKind::single_sheet));
+}
+
+/// A turned scene is told the same of: contacts, T-junctions and what closes it hold there but for rounding.
+TEST_F(SceneCheck, TurnedScenes) {
+  const Scene scene = furnished(
+      object("box = {min = [1,1,0], max = [2,2,1]}") + object("polygons = [[[0,0,0],[1,0,0],[1,0.5,0],[0,0.5,0]]]") +
+      object("polygons = [[[2,0,0],[2,0,1],[2,1,1],[2,1,0]], [[2,1,0],[2,1,1],[3,1,1],[3,1,0]],\n"
+             "[[2,0,1],[3,0,1],[3,0.5,1],[2,0.5,1]], [[2,0.5,1],[3,0.5,1],[3,1,1],[2,1,1]]]") +
+      object("polygons = [[[0,3,1],[0,3,2],[1,3,2],[1,3,1]], [[0,3,1],[1,3,1],[1,3,2],[0,3,2]]]"));
+  const SceneReport straight = check_scene(scene);
+  EXPECT_TRUE(straight.closed);
+  EXPECT_TRUE(straight.watertight);
+  for (const double angle : {0.3, 1.1, 2.3}) {
+    Scene turned = scene;
+    const double c = std::cos(angle), s = std::sin(angle);
+    for (Surface& surface : turned.surfaces) {
+      for (Vec3& p : surface.polygon.outer) {
+        const Vec3 q{c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+        p = {q.x, c * q.y - s * q.z, s * q.y + c * q.z};
+      }
+    }
+    const SceneReport report = check_scene(turned);
+    EXPECT_EQ(report.closed, straight.closed) << angle;
+    EXPECT_EQ(report.watertight, straight.watertight) << angle;
+    EXPECT_EQ(report.pieces, straight.pieces) << angle;
+    EXPECT_EQ(kinds(report), kinds(straight)) << angle;
+    for (const FindingKind kind :
+         {FindingKind::overlap_same_facing, FindingKind::overlap_against, FindingKind::contact_edge}) {
+      ASSERT_TRUE(find(report, kind)) << angle;
+      EXPECT_EQ(find(report, kind)->count, find(straight, kind)->count) << angle;
+      EXPECT_NEAR(find(report, kind)->amount, find(straight, kind)->amount, 1e-12) << angle;
+    }
+  }
 }
 
 TEST_F(SceneCheck, BadFaces) {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "geometry/contour_form_factor.h"
 #include "src/form_factor/area_rows.h"
@@ -198,113 +197,6 @@ TEST(Contacts, WhatLiesOnTopIsSeen) {
   EXPECT_LT(left_of_error(rows, exact, options), kApproach);
   options.contacts = false;
   EXPECT_GT(left_of_error(rows, exact, options), kApproach);
-}
-
-// --- What is level with a facet ------------------------------------------------------------------------------------
-
-/// Sheets in a room of 4 × 4 × 3 without a floor.
-struct Sheets {
-  Sheets(const std::vector<std::vector<Vec3>>& loops, const Placement& place) {
-    Scene scene = empty_scene();
-    for (const std::vector<Vec3>& loop : loops) add(scene, loop, place);
-    add(scene, {{-2, -2, 3}, {-2, 2, 3}, {2, 2, 3}, {2, -2, 3}}, place);
-    soup.emplace(make_soup(scene));
-    contacts.emplace(*soup);
-  }
-
-  /// Pairs of facets of two sheets of which the one is level with the other, told by either, and of coplanar ones.
-  struct Found {
-    int level = 0, coplanar = 0;
-  };
-  Found between(std::uint32_t p, std::uint32_t q) const {
-    Found found;
-    for (std::uint32_t f = soup->first_facet(p); f < soup->first_facet(p + 1); ++f) {
-      for (std::uint32_t t = soup->first_facet(q); t < soup->first_facet(q + 1); ++t) {
-        const auto has = [](std::span<const std::uint32_t> all, std::uint32_t one) {
-          EXPECT_TRUE(std::ranges::is_sorted(all));
-          return std::ranges::binary_search(all, one);
-        };
-        const bool is_level = has(contacts->level_with(f), t), is_coplanar = has(soup->coplanar(f), t);
-        EXPECT_EQ(has(contacts->level_with(t), f), is_level);
-        EXPECT_FALSE(is_level && is_coplanar);
-        found.level += is_level;
-        found.coplanar += is_coplanar;
-      }
-    }
-    return found;
-  }
-
-  std::optional<PolygonSoup> soup;
-  std::optional<Contacts> contacts;
-};
-
-std::vector<Vec3> rectangle_at(double z, double x0, double y0, double x1, double y1) {
-  return {{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}};
-}
-const std::vector<Vec3> kFloor = rectangle_at(0, -2, -2, 2, 2);
-
-// In one plane by identity, or by rounding as they were turned: each two facets the one or the other, all of which meet.
-TEST_P(TurnedOrNot, OfTwoInOnePlaneOneIsLevelOnlyWhereRoundingMovedIt) {
-  const Sheets sheets({kFloor, rectangle_at(0, -0.7, -0.9, 1.1, 0.8)}, place);
-  const auto [level, coplanar] = sheets.between(0, 1);
-  const auto facets = [&](std::uint32_t p) {
-    return static_cast<int>(sheets.soup->first_facet(p + 1) - sheets.soup->first_facet(p));
-  };
-  EXPECT_EQ(level + coplanar, facets(0) * facets(1));
-  EXPECT_EQ(level > 0, GetParam() != 0);
-}
-
-TEST_P(TurnedOrNot, WhatLiesALittleBeforeOrBehindIsLevel) {
-  for (const double height : {0x1p-50, -0x1p-50, 0x1p-52}) {
-    const Sheets sheets({kFloor, rectangle_at(height, -1, -1, 1, 1)}, place);
-    const auto [level, coplanar] = sheets.between(0, 1);
-    EXPECT_GT(level, 0) << height;
-    EXPECT_TRUE(coplanar == 0 || GetParam() != 0) << height;
-  }
-}
-
-TEST_P(TurnedOrNot, WhatIsParallelAtADistanceIsNotLevel) {
-  for (const double height : {0x1p-40, -0x1p-40, 1e-9, 1e-3}) {
-    const Sheets sheets({kFloor, rectangle_at(height, -1, -1, 1, 1)}, place);
-    EXPECT_EQ(sheets.between(0, 1).level, 0) << height;
-  }
-}
-
-TEST_P(TurnedOrNot, WhatMeetsAlongAnEdgeIsLevel) {
-  for (const double height : {0x1p-50, -0x1p-50}) {
-    const Sheets sheets({rectangle_at(0, -2, -2, 0, 2), rectangle_at(height, 0, -1.1, 1.7, 2)}, place);
-    EXPECT_GT(sheets.between(0, 1).level, 0) << height;
-  }
-}
-
-TEST_P(TurnedOrNot, WhatFacesTheOtherWayIsNotLevel) {
-  std::vector<Vec3> down = rectangle_at(0x1p-50, -1, -1, 1, 1);
-  std::ranges::reverse(down);
-  EXPECT_EQ(Sheets({kFloor, down}, place).between(0, 1).level, 0);
-}
-
-// About an edge that they share, or of which one lies in the other: by an angle that rounding could not do.
-TEST_P(TurnedOrNot, WhatIsTiltedIsNotLevel) {
-  for (const double rise : {1e-9, -1e-9, 0.1}) {
-    const std::vector<Vec3> about_an_edge = {{0, -2, 0}, {2, -2, rise}, {2, 2, rise}, {0, 2, 0}};
-    const std::vector<Vec3> within = {{-1, -1, -rise}, {1, -1, rise}, {1, 1, rise}, {-1, 1, -rise}};
-    EXPECT_EQ(Sheets({rectangle_at(0, -2, -2, 0, 2), about_an_edge}, place).between(0, 1).level, 0) << rise;
-    EXPECT_EQ(Sheets({kFloor, within}, place).between(0, 1).level, 0) << rise;
-  }
-}
-
-// All of it lies in the floor's plane but for rounding, though the floor does not lie in its.
-TEST(Contacts, WhatIsSoNarrowThatRoundingTiltsItIsLevel) {
-  const std::vector<Vec3> strip = {{-1, 0, 0x1p-51}, {1, 0, 0x1p-51}, {1, 0x1p-48, 0x1p-50}, {-1, 0x1p-48, 0x1p-50}};
-  const Sheets sheets({kFloor, strip}, {});
-  EXPECT_GT(sheets.between(0, 1).level, 0);
-}
-
-// The facets of a sheet that was bent by rounding are no others than itself.
-TEST(Contacts, FacetsOfOnePolygonAreNotLevelWithEachOther) {
-  const Sheets sheets({{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0x1p-50}, {-2, 2, 0}}}, {});
-  ASSERT_EQ(sheets.soup->first_facet(1) - sheets.soup->first_facet(0), 2u);
-  EXPECT_EQ(sheets.between(0, 0).level, 0);
 }
 
 /// In a furnished room a fifth of all sample points lie in contacts.
