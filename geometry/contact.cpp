@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -145,24 +146,26 @@ double overlap_in_projection(Projection projection, const Loop& f, int f_sense, 
 }
 
 struct Overlap {
-  double area = 0;
-  bool same_facing = false;
+  double area;
+  bool same_facing;
 };
 
 // Of facets in exactly one plane.
-Overlap overlap_in_plane(const FlatFacet& f, const FlatFacet& g) {
+std::optional<Overlap> overlap_in_plane(const FlatFacet& f, const FlatFacet& g) {
   const int f_sense = rotation_sense(f.projection, f.loop), g_sense = rotation_sense(f.projection, g.loop);
   if (separated_by_edge(f.projection, f.loop, f_sense, g.loop) ||
       separated_by_edge(f.projection, g.loop, g_sense, f.loop)) {
-    return {};
+    return std::nullopt;
   }
-  return {stretch(f) * overlap_in_projection(f.projection, f.loop, f_sense, g.loop, g_sense), f_sense == g_sense};
+  return Overlap{stretch(f) * overlap_in_projection(f.projection, f.loop, f_sense, g.loop, g_sense),
+                 f_sense == g_sense};
 }
 
 // Of others.
-Overlap overlap_near_plane(const FlatFacet& f, const FlatFacet& g, double near) {
-  if (near == 0) return {};
-  return {level_area(f.loop, g.loop, near), dot(area_vector(f.loop), area_vector(g.loop)) > 0};
+std::optional<Overlap> overlap_near_plane(const FlatFacet& f, const FlatFacet& g, double near) {
+  const double area = near > 0 ? level_area(f.loop, g.loop, near) : 0;
+  if (!(area > 0)) return std::nullopt;
+  return Overlap{area, dot(area_vector(f.loop), area_vector(g.loop)) > 0};
 }
 
 }  // namespace
@@ -182,8 +185,8 @@ std::vector<CoplanarOverlap> coplanar_overlaps(std::span<const Polygon> polygons
   for_each_near_pair(boxes, [&](std::uint32_t i, std::uint32_t j) {
     const FlatFacet &f = facets[i], &g = facets[j];
     if (f.polygon == g.polygon) return;
-    const Overlap overlap = in_one_plane(f, g) ? overlap_in_plane(f, g) : overlap_near_plane(f, g, near);
-    if (overlap.area > 0) found[{f.polygon, g.polygon, overlap.same_facing}].push_back({i, j, overlap.area});
+    const auto overlap = in_one_plane(f, g) ? overlap_in_plane(f, g) : overlap_near_plane(f, g, near);
+    if (overlap) found[{f.polygon, g.polygon, overlap->same_facing}].push_back({i, j, overlap->area});
   });
 
   std::vector<CoplanarOverlap> overlaps;

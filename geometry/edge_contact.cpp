@@ -120,7 +120,7 @@ std::vector<bool> edges_in_contact(std::span<const DirectedEdge> edges, std::spa
   in_contact.reserve(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const double length = norm(edges[i].to - edges[i].from);
-    in_contact.push_back(cover_all(stretches[i], length > near ? near / length : 1));
+    in_contact.push_back(cover_all(stretches[i], near == 0 ? 0 : length > near ? near / length : 1));
   }
   return in_contact;
 }

@@ -28,15 +28,6 @@ bool may_overlap(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, dou
   return std::min(length, std::max(at_c, at_d)) > std::max(0.0, std::min(at_c, at_d)) - near;
 }
 
-/// Whether a facet is the end of a chain (level_chain.h) of three.
-bool ends_chain(const PolygonSoup& soup, std::uint32_t f) {
-  const auto is_other_end = [&](std::uint32_t g) {
-    return g != f && !std::ranges::binary_search(soup.coplanar(f), g) && may_end_chain(soup, f, g);
-  };
-  return std::ranges::any_of(soup.coplanar(f),
-                             [&](std::uint32_t t) { return std::ranges::any_of(soup.coplanar(t), is_other_end); });
-}
-
 }  // namespace
 
 /// Facets that are there and whose box touches or overlaps the box.
@@ -136,6 +127,20 @@ void PolygonSoup::update_coplanar(std::uint32_t first, std::span<const std::uint
   }
 }
 
+bool PolygonSoup::lies_on_others(std::uint32_t f) const {
+  return std::ranges::any_of(coplanar(f), [&](std::uint32_t t) { return facets_[t].polygon != facets_[f].polygon; });
+}
+
+/// Whether another facet that is not in the plane of f is no farther from it than the ends of chains are.
+bool PolygonSoup::is_piled(std::uint32_t f) const {
+  if (pile() == 0) return false;
+  std::vector<std::uint32_t> near;
+  find_facets(box_of(f).grown(pile()), near);
+  return std::ranges::any_of(near, [&](std::uint32_t t) {
+    return t != f && !std::ranges::binary_search(coplanar(f), t) && may_end_chain(*this, f, t);
+  });
+}
+
 std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, PolygonRange gone, const Arrival& arrival) {
   Store& store = *before.store_;
   store.take_back();
@@ -168,12 +173,9 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   if (extent_coming > before.extent_) return std::nullopt;
   if (extent_leaving == before.extent_ && extent_coming < before.extent_) return std::nullopt;
   if (before.joins_others(gone_first, gone_last, beside)) return std::nullopt;
-  // What goes may be the link of a chain.
-  const auto is_held_by_chain = [&](std::uint32_t t) {
-    return std::ranges::any_of(before.coplanar(t), [&](std::uint32_t u) { return !before.is_coplanar(u, t); });
-  };
+  // What goes may be the link of a chain, what comes may become one.
   for (std::uint32_t f = gone_first; f < gone_last; ++f) {
-    if (std::ranges::any_of(before.coplanar(f), is_held_by_chain)) return std::nullopt;
+    if (before.piled_ && before.lies_on_others(f)) return std::nullopt;
   }
   // What is behind the walls of one room depends on where others are.
   const auto has_room = [&](std::size_t first, std::size_t last) {
@@ -187,6 +189,7 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   after.gone_ = before.gone_;
   after.extent_ = before.extent_;
   after.planes_ = before.planes_;
+  after.piled_ = before.piled_;
   const std::uint32_t first = store.used;
   const auto first_shell = static_cast<std::uint32_t>(store.shells.size());
   const auto first_polygon = static_cast<std::uint32_t>(store.roles.size());
@@ -208,11 +211,8 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   after.update_coplanar(first, beside);
   after.touched_ = beside;
   for (std::uint32_t f = first; f < store.used; ++f) after.touched_.push_back(f);
-  if (after.level() > 0) {
-    const auto ends = [&](std::uint32_t f) { return ends_chain(after, f); };
-    for (std::uint32_t f = first; f < store.used; ++f) {
-      if (ends(f) || std::ranges::any_of(after.coplanar(f), ends)) return std::nullopt;
-    }
+  for (std::uint32_t f = first; f < store.used; ++f) {
+    if ((after.piled_ && after.lies_on_others(f)) || after.is_piled(f)) return std::nullopt;
   }
   if (!store.behind_known &&
       std::ranges::any_of(after.touched_, [&](std::uint32_t f) { return after.is_against_patch(f); }))

@@ -34,10 +34,11 @@ double area_flat_on(const Loop& f, const Loop& g, double near) {
     const Vec3 inward = cross(normal, f[(k + 1) % f.size()] - f[k]);
     common = convex_part(common, [&](const Vec3& v) { return dot(inward, v - f[k]); });
     of_common = norm(area_vector(common));
-    // Of loops that meet along an edge, at any angle, rounding makes overlaps some ulps of their coordinates wide, and
-    // there they lie no farther apart: an overlap must be wider than what it is judged by.
-    if (of_common <= std::max(enough, 2 * near * extent_of(common))) return 0;
+    if (of_common <= enough) return 0;
   }
+  // Of loops that meet along an edge, at any angle, rounding makes overlaps some ulps of their coordinates wide, and
+  // there they lie no farther apart: an overlap must be wider than what it is judged by.
+  if (of_common <= 2 * near * extent_of(common)) return 0;
   const bool is_flat = std::ranges::all_of(common, [&](const Vec3& v) { return std::fabs(height(v)) <= limit; });
   return is_flat ? of_common : 0;
 }

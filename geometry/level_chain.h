@@ -2,7 +2,6 @@
 // Facets that are level with each other by way of others between them: a pile of sheets of which each lies on the next.
 
 #include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -10,13 +9,15 @@
 
 namespace exitance {
 
-/// Whether two facets of different polygons may be the ends of a chain: they are level within soup.pile().
+using FacetPair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Whether two facets, not in coplanar() of each other, may be the ends of a chain: they are of different polygons and
+/// level within soup.pile().
 bool may_end_chain(const PolygonSoup& soup, std::uint32_t f, std::uint32_t g);
 
-/// Pairs f < g of those, not in coplanar() of each other, which a chain of facets joins that are so one by one. Were
-/// these left to their coordinates, three in a pile could cover each other in a ring. boxes: of all facets; index: of
-/// the boxes.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> ends_of_chains(const PolygonSoup& soup, std::span<const Box> boxes,
-                                                                    const SpatialIndex& index);
+/// Of pairs that may be, those that a chain of facets joins of which each lies in coplanar() of the next, unoccluding
+/// ones aside. Were these left to their coordinates, three in a pile could cover each other in a ring. In piles that
+/// are higher than soup.pile(), topmost and lowest may.
+std::vector<FacetPair> ends_of_chains(const PolygonSoup& soup, std::vector<FacetPair> pairs);
 
 }  // namespace exitance

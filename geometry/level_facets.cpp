@@ -14,19 +14,13 @@ Loop loop_of(std::span<const Corner> corners) {
   return loop;
 }
 
-Box box_of(std::span<const Corner> corners) {
-  Box box;
-  for (const Corner& c : corners) box.extend(c.at);
-  return box;
-}
-
 }  // namespace
 
 bool are_level(const PolygonSoup& soup, std::uint32_t f, std::uint32_t g, double near) {
   const Plane &of_f = soup.facets()[f].plane, &of_g = soup.facets()[g].plane;
   if (!may_be_level(of_f.normal, of_g.normal)) return false;
   const auto corners_f = soup.corners(soup.facets()[f]), corners_g = soup.corners(soup.facets()[g]);
-  const Box box_f = box_of(corners_f), box_g = box_of(corners_g);
+  const Box box_f = soup.box_of(f), box_g = soup.box_of(g);
   if (!box_f.grown(near).overlaps(box_g)) return false;
   // Most lie farther off each other's planes than level_area lets them. An area is at least half its plane's normal.
   const double size_f = norm(box_f.upper - box_f.lower), size_g = norm(box_g.upper - box_g.lower);
@@ -52,7 +46,7 @@ bool any_are_level(const PolygonSoup& soup) {
 
 bool backs(const PolygonSoup& soup, const Shell& shell, std::uint32_t own, std::uint32_t f, int side) {
   const Plane &plane = soup.facets()[f].plane, &of_own = soup.facets()[own].plane;
-  const double above = soup.level() * norm(plane.normal), below = -soup.level() * norm(of_own.normal);
+  const double above = soup.pile() * norm(plane.normal), below = -soup.pile() * norm(of_own.normal);
   return std::ranges::all_of(
              shell.vertices,
              [&](std::uint32_t v) { return side * dot(plane.normal, soup.vertices()[v] - plane.origin) <= above; }) ||

@@ -13,8 +13,8 @@ bool are_level(const PolygonSoup& soup, std::uint32_t f, std::uint32_t g, double
 /// Whether any facets of different polygons are, within soup.level(), whichever way they face.
 bool any_are_level(const PolygonSoup& soup);
 
-/// Whether a convex shell lies behind facet f, nowhere more than soup.level() before it, as the shell's facet `own`,
-/// which is level with f and faces the same way as its side, says: by the corners of the shell or, where f is the
+/// Whether a convex shell lies behind facet f, nowhere more than soup.pile() before it, as the shell's facet `own`,
+/// which is coplanar() with f and faces the same way as its side, says: by the corners of the shell or, where f is the
 /// narrower one, by those of f. side: 1 for the front of f, −1 for its back.
 bool backs(const PolygonSoup& soup, const Shell& shell, std::uint32_t own, std::uint32_t f, int side);
 

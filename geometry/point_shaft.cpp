@@ -61,17 +61,18 @@ std::span<const HalfSpace> PointShaft::half_spaces() {
 }
 
 /// Whether a facet is an end's, or another polygon's in its plane: it hides nothing in between.
-bool PointShaft::is_of_end(std::uint32_t facet) const {
-  const auto is_of = [&](std::uint32_t end) {
-    if (end == kNone || facet == end) return facet == end;
+bool PointShaft::lies_in_an_end(std::uint32_t facet) const {
+  const auto lies_in = [&](std::uint32_t end) {
+    if (facet == end) return true;
+    if (end == kNone) return false;
     return soup_.facets()[facet].polygon != soup_.facets()[end].polygon &&
            std::ranges::binary_search(soup_.coplanar(end), facet);
   };
-  return is_of(receiver_.facet) || is_of(shooter_.facet);
+  return lies_in(receiver_.facet) || lies_in(shooter_.facet);
 }
 
 bool PointShaft::enters(std::uint32_t facet) {
-  if (empty_ || is_of_end(facet)) return false;
+  if (empty_ || lies_in_an_end(facet)) return false;
   return meets_region(soup_.facets()[facet]);
 }
 
@@ -82,7 +83,7 @@ bool PointShaft::meets_region(const Facet& facet) {
 }
 
 bool PointShaft::blocks(std::uint32_t facet) {
-  if (empty_ || is_of_end(facet)) return false;
+  if (empty_ || lies_in_an_end(facet)) return false;
   const Facet& f = soup_.facets()[facet];
   const int side = side_of(f.plane, receiver_.point, counts_);
   if (side == 0) return false;
@@ -130,7 +131,7 @@ bool PointShaft::is_screen(std::uint32_t item) {
   const auto in_front = [&](const Vec3& v) { return side_of(plane, v, counts_) > 0; };
   if (item < facets) {
     const Facet& f = soup_.facets()[item];
-    return !is_of_end(item) && side_of(f.plane, receiver_.point, counts_) != 0 &&
+    return !lies_in_an_end(item) && side_of(f.plane, receiver_.point, counts_) != 0 &&
            std::ranges::all_of(soup_.corners(f), [&](const Corner& c) { return in_front(c.at); });
   }
   const Shell& shell = soup_.shells()[item - facets];
@@ -220,7 +221,7 @@ bool PointShaft::rest_is_hidden(const Facet& facet, std::size_t screen) {
 }
 
 bool PointShaft::hidden(std::uint32_t facet) {
-  if (empty_ || is_of_end(facet)) return true;
+  if (empty_ || lies_in_an_end(facet)) return true;
   const Facet& f = soup_.facets()[facet];
   if (side_of(f.plane, receiver_.point, counts_) == 0) return true;
   if (sticks_out(f)) return false;

@@ -65,7 +65,7 @@ class PointShaft {
     std::size_t first, last;  ///< its edges
   };
 
-  bool is_of_end(std::uint32_t facet) const;
+  bool lies_in_an_end(std::uint32_t facet) const;
   bool meets_region(const Facet& facet);
   bool is_screen(std::uint32_t item);
   bool enters_seen(std::uint32_t item);

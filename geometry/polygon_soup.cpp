@@ -323,32 +323,30 @@ void PolygonSoup::find_coplanar() {
   std::vector<Box> boxes(store_->used);
   for (std::uint32_t f = 0; f < boxes.size(); ++f) boxes[f] = box_of(f);
   const SpatialIndex index(boxes);
+  const auto occludes = [&](std::uint32_t f) { return roles_[facets_[f].polygon] != Role::unoccluding; };
   std::vector<std::uint32_t> near;
-  bool any_level = false;
+  std::vector<FacetPair> apart;
   for (std::uint32_t f = 0; f < boxes.size(); ++f) {
     near.clear();
-    const Box around = boxes[f].grown(level());
+    const Box around = boxes[f].grown(pile()), close = boxes[f].grown(level());
     index.find(around, near);
     std::erase_if(near, [&](std::uint32_t t) {
-      if (t == f || roles_[facets_[t].polygon] == Role::unoccluding || !boxes[t].overlaps(around)) return true;
-      if (lies_in_plane(t, f)) return false;
-      if (planes_ == Planes::as_written || facets_[t].polygon == facets_[f].polygon) return true;
-      const bool is_level = are_level(*this, t, f, level());
-      any_level = any_level || is_level;
-      return !is_level;
+      if (t == f || !occludes(t) || !boxes[t].overlaps(around)) return true;
+      if (boxes[t].overlaps(close) && is_coplanar(t, f)) return false;
+      if (f < t && occludes(f) && may_end_chain(*this, f, t)) apart.emplace_back(f, t);
+      return true;
     });
     if (near.empty()) continue;
     std::sort(near.begin(), near.end());
     coplanar_.set(f, near);
   }
-  if (!any_level) return;
+  piled_ = !apart.empty();
   const auto add = [&](std::uint32_t f, std::uint32_t t) {
-    if (roles_[facets_[t].polygon] == Role::unoccluding) return;
     std::vector<std::uint32_t> others = coplanar_[f];
     others.insert(std::ranges::lower_bound(others, t), t);
     coplanar_.set(f, std::move(others));
   };
-  for (const auto& [f, g] : ends_of_chains(*this, boxes, index)) {
+  for (const auto& [f, g] : ends_of_chains(*this, std::move(apart))) {
     add(f, g);
     add(g, f);
   }

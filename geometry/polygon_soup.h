@@ -112,9 +112,9 @@ class PolygonSoup {
   /// polygons, facets and shells keep their numbers; those that are gone are there still, but in nothing that is
   /// searched. Takes time and memory by what goes and comes and by what lies beside that, not by all. None where it
   /// cannot be told from that alone what others become, and the soup must be made anew: what goes or comes meets edges
-  /// of others or, with edges that it leaves open, their faces; patches lie against each other where none did; a pile of
-  /// facets a few roundings apart (level_chain.h) changes; the extent changes; the spare room is used up. No two threads
-  /// may make soups from `before`, or from soups that share with it, at a time.
+  /// of others or, with edges that it leaves open, their faces; patches lie against each other where none did; facets
+  /// come to be a few roundings apart (level_chain.h) or, where some are, lie on others; the extent changes; the spare
+  /// room is used up. No two threads may make soups from `before`, or from soups that share with it, at a time.
   static std::optional<PolygonSoup> edited(const PolygonSoup& before, PolygonRange gone, const Arrival& arrival);
 
   PolygonSoup(const PolygonSoup&) = delete;  // only edits share
@@ -135,6 +135,7 @@ class PolygonSoup {
   bool is_present(std::uint32_t facet) const;
   std::span<const Corner> corners(const Facet& f) const { return {corners_.data() + f.first, f.count}; }
   const FirstCorners& first_corners(std::uint32_t facet) const { return first_corners_[facet]; }
+  Box box_of(std::uint32_t facet) const;  ///< around its corners
 
   /// With those that are gone.
   std::size_t polygon_count() const { return roles_.size(); }
@@ -174,7 +175,7 @@ class PolygonSoup {
   double extent() const { return extent_; }
   /// [m] How far apart facets may lie that count as in one plane: 0 where only coordinates count.
   double level() const { return planes_ == Planes::rounded ? kLevel * extent_ : 0; }
-  /// [m] The same by way of others between them (level_chain.h).
+  /// [m] The same by way of others between them (level_chain.h): of 65 sheets at most, each level with the next.
   double pile() const { return 64 * level(); }
 
  private:
@@ -192,7 +193,8 @@ class PolygonSoup {
   void build_index();
   bool lies_in_plane(std::uint32_t t, std::uint32_t f) const;
   bool is_coplanar(std::uint32_t t, std::uint32_t f) const;
-  Box box_of(std::uint32_t facet) const;
+  bool lies_on_others(std::uint32_t f) const;
+  bool is_piled(std::uint32_t f) const;
   void find_facets(const Box& box, std::vector<std::uint32_t>& found) const;
   bool joins_others(std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& beside) const;
   bool joins(std::uint32_t f, std::uint32_t g, double near) const;
@@ -218,6 +220,7 @@ class PolygonSoup {
   SpatialIndex index_;
   double extent_ = 0;
   Planes planes_ = Planes::as_written;
+  bool piled_ = false;  ///< some facets are apart as the ends of chains are
 };
 
 }  // namespace exitance

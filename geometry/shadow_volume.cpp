@@ -52,13 +52,9 @@ void ShadowVolume::set_shooter(const ShaftEnd& shooter) {
   const auto coplanar = soup.coplanar(shooter.facet);
   Box box;
   for (const Vec3& v : loop_) box.extend(v);
-  const auto reaches_shooter = [&](const Facet& facet) {
-    Box of_facet;
-    for (const Corner& c : soup.corners(facet)) of_facet.extend(c.at);
-    return of_facet.overlaps(box.grown(soup.pile()));
-  };
+  box = box.grown(soup.pile());
   covers_shooter_ = std::any_of(coplanar.begin(), coplanar.end(), [&](std::uint32_t t) {
-    return caster_.has(t) && soup.covers(t, shooter.facet) && reaches_shooter(soup.facets()[t]);
+    return caster_.has(t) && soup.covers(t, shooter.facet) && soup.box_of(t).overlaps(box);
   });
 
   region_.clear();

@@ -330,7 +330,8 @@ Shaft::Overlap Shaft::find_occluders(std::vector<std::uint32_t>& items) {
   half_spaces_.clear();
   for (std::size_t i = 0; i < region_.count(); ++i) {
     const HalfSpace h = region_.half_space(i, soup_.extent());
-    if (std::isfinite(h.offset)) half_spaces_.push_back({h.normal, h.offset - norm(h.normal) * soup_.pile()});
+    const double lowered = h.offset - norm(h.normal) * soup_.pile();
+    if (std::isfinite(lowered)) half_spaces_.push_back({h.normal, lowered});
   }
   soup_.index().find(half_spaces_, box_.grown(soup_.pile()), items);
   soup_.prefetch(items);

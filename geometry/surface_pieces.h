@@ -34,10 +34,9 @@ struct SurfacePieces {
 };
 
 /// Edges and contacts are decided exactly or within `near` [m] (edge_matching.h, edge_contact.h), and what is no thicker
-/// than that bounds nothing. A piece counts as enclosed when at least
-/// half of its area has its front within the other one, seen just above the middles of its facets; so a table on the
-/// floor, a rug on it, and a box outside that leans against the wall are told apart. REQUIRES: no defects but zero area
-/// (find_defect).
+/// than that bounds nothing. A piece counts as enclosed when at least half of its area has its front within the other
+/// one, seen just above the middles of its facets; so a table on the floor, a rug on it, and a box outside that leans
+/// against the wall are told apart. REQUIRES: no defects but zero area (find_defect).
 SurfacePieces find_surface_pieces(std::span<const Polygon> polygons, double near = 0);
 
 }  // namespace exitance

@@ -29,7 +29,8 @@ std::uint64_t id_of(const ViewPlane& side) {
   return 0;
 }
 
-/// [rad] Shorter stretches of edges come and go by rounding; of others the ends are known to a sixteenth of that (answer).
+/// [rad] Shorter stretches of edges come and go by rounding; of others the ends are known to a sixteenth of that
+/// (answer).
 constexpr double kShortest = 1e-10;
 
 /// Ends of a stretch, as unit vectors from the point of view.
@@ -249,8 +250,8 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   half_spaces.push_back({view.receiver().normal, dot(view.receiver().normal, view.receiver().point) -
                                                      16 * kRoundoff * norm(view.receiver().normal) * reach});
   half_spaces.push_back({normal, dot(normal, plane.origin) -
-                                     (2 * plane.normal_error + 16 * kRoundoff * norm(normal)) * reach -
-                                     norm(normal) * soup.pile()});
+                                     (2 * plane.normal_error + 16 * kRoundoff * norm(plane.normal)) * reach -
+                                     norm(plane.normal) * soup.pile()});
   Box box;
   box.extend(view.receiver().point);
   for (const Vec3* v : corners) box.extend(*v);
@@ -259,12 +260,15 @@ bool Viewpoint::State::find_candidates(std::uint32_t facet) {
   soup.index().find(half_spaces, box.grown(soup.pile()), found);
   soup.prefetch_corners(found);
   choose_silhouettes();
-  return std::ranges::all_of(by_silhouette, [&](std::uint32_t s) { return add_candidate({kNone, s}); }) &&
+  return std::ranges::all_of(by_silhouette,
+                             [&](std::uint32_t s) {
+                               return add_candidate({kNone, s});
+                             }) &&
          add_items(found);
 }
 
-/// Chooses the shells of which many facets were found, to be taken by their silhouettes; their facets are then not asked
-/// for. A source's own shell lies on both sides of its plane, or not in front of it at all.
+/// Chooses the shells of which many facets were found, to be taken by their silhouettes; their facets are then not
+/// asked for. A source's own shell lies on both sides of its plane, or not in front of it at all.
 void Viewpoint::State::choose_silhouettes() {
   forget_silhouettes();
   const auto facets = static_cast<std::uint32_t>(soup.facets().size());

@@ -108,8 +108,8 @@ class VisibleRegion {
   enum class Place { nowhere, in_front, across };
 
   /// Where the part of a shell that is above the horizon lies: nowhere in front of the source's plane, nowhere behind
-  /// it, or on both sides. Where a facet of it is in the source's plane and faces the side that is seen, so that the
-  /// solid lies behind the plane, it is nowhere in front if it is convex and across if not, whatever rounding says.
+  /// it, or on both sides. Where a facet of it is in the source's plane and faces the side that is seen, it is nowhere
+  /// in front if it is convex and lies behind the plane but for rounding (backs), and across if it is not convex.
   Place place_of(const Shell& shell);
 
   /// Calls sink(arc) for every stretch of the boundary, and for those that are empty but might not be without rounding.
@@ -329,6 +329,7 @@ typename VisibleRegion<Real>::Place VisibleRegion<Real>::place_of(const Shell& s
     if (above && in_front && behind) break;
   }
   if (!above || !in_front) return Place::nowhere;
+  if (behind && !shell.convex) return Place::across;
   const auto backs_source = [&](std::uint32_t f) {
     return dot(soup_.facets()[f].plane.normal, m) > 0 && std::ranges::binary_search(coplanar_, f) &&
            (!shell.convex || backs(soup_, shell, f, source_facet_, facing_source_));

@@ -259,7 +259,7 @@ std::vector<std::uint32_t> SceneVersion::resampled_since(const SceneVersion& oth
 Box SceneVersion::box_of_patch(std::uint32_t patch) const {
   Box box;
   for (const PatchPiece& piece : mesh_.pieces_of(mesh_.patches[patch])) {
-    if (piece.loop_count == 0) box.extend(box_of(soup_, piece.facet));
+    if (piece.loop_count == 0) box.extend(soup_.box_of(piece.facet));
     for (const Vec3& corner : mesh_.loop(piece)) box.extend(corner);
   }
   return box;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/level.h"
 #include "src/visibility/contacts.h"
 
 namespace exitance {
@@ -11,7 +12,7 @@ namespace {
 bool in_contact(const PolygonSoup& soup, std::uint32_t face, std::uint32_t polygon) {
   const Plane& plane = soup.facets()[polygon].plane;
   if (!(dot(soup.facets()[face].plane.normal, plane.normal) < 0)) return false;
-  const double flat = 0x1p-47 * soup.extent() * norm(plane.normal);
+  const double flat = kLevel * soup.extent() * norm(plane.normal);
   const auto coplanar = soup.coplanar(polygon);
   return !std::ranges::binary_search(coplanar, face) &&
          std::ranges::all_of(soup.corners(soup.facets()[face]), [&](const Corner& c) {

@@ -16,7 +16,4 @@ struct FacetRange {
 /// With its box.
 FacetRange facet_range(const PolygonSoup& soup, std::uint32_t first, std::uint32_t last);
 
-/// Around a facet.
-Box box_of(const PolygonSoup& soup, std::uint32_t facet);
-
 }  // namespace exitance

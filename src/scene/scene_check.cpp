@@ -207,11 +207,11 @@ class SceneChecker {
     const auto compare = [](const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
       return std::ranges::lexicographical_compare(a, b, {}, order, order);
     };
-    std::set<std::vector<Vec3>, decltype(compare)> seen(compare);
+    std::map<std::vector<Vec3>, bool, decltype(compare)> seen(compare);  // whether without holes, too
     for (std::uint32_t i = 0; i < polygons_.size(); ++i) {
-      const bool is_first = seen.insert(canonical(polygons_[i].outer)).second;
+      const auto [outline, is_first] = seen.try_emplace(canonical(polygons_[i].outer), false);
       if (!is_first) add(FindingKind::duplicate_face, surface_of_[i], norm(area_vector(polygons_[i])));
-      if (is_first || !polygons_[i].holes.empty()) distinct_.push_back(i);
+      if (!polygons_[i].holes.empty() || !std::exchange(outline->second, true)) distinct_.push_back(i);
     }
   }
 

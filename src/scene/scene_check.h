@@ -76,8 +76,9 @@ SceneReport check_scene(const Scene& scene);
 /// Whether the surfaces bound a volume that the patches face, so that no light escapes: there is a closed piece of
 /// surface whose fronts look in (a room), and every other piece with patches is such a room too or lies within one.
 /// Edges must cancel (T-junctions allowed) or end on the surface of another piece (contact: a box without a bottom on a
-/// floor), but for the rounding of turned scenes (level.h). What stands within a room may be open: it lets nothing out. Takes a second or so for 60,000
-/// polygons. REQUIRES: polygons without defects but zero area, as read_scene returns them.
+/// floor), but for the rounding of turned scenes (level.h). What stands within a room may be open: it lets nothing out.
+/// Takes a second or so for 60,000 polygons. REQUIRES: polygons without defects but zero area, as read_scene returns
+/// them.
 bool is_closed(const Scene& scene);
 
 }  // namespace exitance

@@ -59,7 +59,7 @@ std::vector<std::string> find_trespass(const EditedScene& scene, const PolygonSo
   StageCounts counts;
   for (std::uint32_t f = range.first; f < range.last; ++f) {
     found.clear();
-    soup.index().find(box_of(soup, f), found);
+    soup.index().find(soup.box_of(f), found);
     const auto look = [&](std::uint32_t other) {
       if (is_own(other)) return;
       const auto of = static_cast<std::uint32_t>(

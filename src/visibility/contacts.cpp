@@ -51,10 +51,8 @@ Contacts::LyingOn Contacts::find_lying_on(std::uint32_t f) const {
     const bool of_solid = soup_->role(facets[t].polygon) != Role::sheet && face_against(facets[t].plane, plane);
     (of_solid ? found.burying : found.overlying).push_back(t);
   }
-  Box around;
-  for (const Corner& c : soup_->corners(facets[f])) around.extend(c.at);
   std::vector<std::uint32_t> items, near;
-  soup_->index().find(around.grown(near_), items);
+  soup_->index().find(soup_->box_of(f).grown(near_), items);
   for (const std::uint32_t item : items) {
     if (item < facets.size()) {
       near.push_back(item);
@@ -78,12 +76,12 @@ bool Contacts::touched(std::uint32_t facet, const Vec3& point) const {
 }
 
 bool Contacts::buried(std::uint32_t facet, const Vec3& point) const {
-  return any_at(lying_on_[facet].burying, point, kOfComputed * near_) ||
+  return any_at(lying_on_[facet].burying, point, kOfComputed * near_ + soup_->pile()) ||
          any_at(lying_on_[facet].touching, point, kOfComputed * near_);
 }
 
 bool Contacts::overlaid(std::uint32_t facet, const Vec3& point) const {
-  return any_at(lying_on_[facet].overlying, point, kOfComputed * near_);
+  return any_at(lying_on_[facet].overlying, point, kOfComputed * near_ + soup_->pile());
 }
 
 Contacts::Pair Contacts::pair(std::uint32_t i, std::uint32_t j) const {

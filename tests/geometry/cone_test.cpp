@@ -166,7 +166,9 @@ TYPED_TEST(ConeOf, RowsAndColumnsTellTheSignOfEveryCorner) {
       cone.corners.set_kept(0, false);
       for (std::size_t s = 0; s < of_sides.size(); ++s) {
         Row<TypeParam> row;
-        row.fill(other.sides[s], cone.corners, frame, counts);
+        StageCounts of_row;
+        row.fill(other.sides[s], cone.corners, frame, of_row);
+        std::uint64_t certain = 0;
         bool any_positive = false, any_negative = false, all_positive = true;
         for (std::size_t c = 0; c < n; ++c) {
           const double truth = value(s, c);
@@ -174,6 +176,7 @@ TYPED_TEST(ConeOf, RowsAndColumnsTellTheSignOfEveryCorner) {
           ASSERT_EQ(row.at(c).sign, sign_of(truth));
           ASSERT_LE(std::fabs(static_cast<double>(row.at(c).value) - truth), static_cast<double>(row.at(c).error));
           ASSERT_EQ(value_at(other.sides[s], cone.corners, c, frame, counts).sign, sign_of(truth));
+          certain += truth != 0;
           any_positive = any_positive || (c > 0 && truth > 0);
           any_negative = any_negative || (c > 0 && truth < 0);
           all_positive = all_positive && truth > 0;
@@ -181,6 +184,7 @@ TYPED_TEST(ConeOf, RowsAndColumnsTellTheSignOfEveryCorner) {
         ASSERT_EQ(row.any_positive(), any_positive) << n << ", side " << s;
         ASSERT_EQ(row.any_negative(), any_negative) << n << ", side " << s;
         ASSERT_EQ(row.all_positive(), all_positive) << n << ", side " << s;
+        ASSERT_GE(of_row.filter, certain) << n << ", side " << s;
       }
       SideBlocks<TypeParam> sides;
       sides.set(other.sides);

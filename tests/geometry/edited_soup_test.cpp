@@ -342,6 +342,41 @@ TEST_F(EditedRoom, MustBeMadeAnewWhereAPileChanges) {
   EXPECT_TRUE(PolygonSoup::edited(base, pair.of_object[3], {}));
 }
 
+/// Four planks about a square, each over the next one's end, and the last a little too high over the first: a chain of
+/// all joins these two.
+TEST_F(EditedRoom, MustBeMadeAnewWhereAChainOfFourCloses) {
+  constexpr double kStep = 0.9 * 0x1p-47 * 4;
+  const auto plank = [&](double x, double y, double width, double depth, int step) {
+    Faces faces = shape(3);
+    for (Polygon& face : faces) {
+      for (Vec3& p : face.outer) p = {width * p.x, depth * p.y, 0.5 * p.z};
+    }
+    return placed(faces, 0.01 * (step + 1), {x, y, 2 + step * kStep});
+  };
+  Objects objects = objects_;
+  objects.faces[3] = plank(1, 1, 1.6, 0.4, 0);
+  objects.faces[4] = plank(1.1, 2.2, 1.5, 0.5, 2);
+  objects.faces[5] = plank(0.9, 1.05, 0.4, 1.45, 3);
+  const Faces link = plank(2.2, 1.1, 0.5, 1.5, 1);
+  const Objects::List open = objects.all();
+  const auto lowest = [](const PolygonSoup& soup, const Objects::List& list, std::uint32_t object) {
+    return soup.first_facet(list.of_object[object].first);
+  };
+  const auto joined = [&](const PolygonSoup& soup, const Objects::List& list) {
+    return std::ranges::binary_search(soup.coplanar(lowest(soup, list, 3)), lowest(soup, list, 5));
+  };
+  const PolygonSoup base = fresh(open, Planes::rounded);
+  ASSERT_FALSE(joined(base, open));
+  objects.faces[6] = link;
+  const Objects::List closed = objects.all();
+  const PolygonSoup anew = fresh(closed, Planes::rounded);
+  ASSERT_TRUE(joined(anew, closed));
+  EXPECT_FALSE(PolygonSoup::edited(base, {}, objects.list(6, 7).arrival()));
+  EXPECT_FALSE(PolygonSoup::edited(anew, closed.of_object[6], {}));
+  objects.faces[6] = placed(link, 0, {0, 0, 1});  // far from all of them
+  EXPECT_TRUE(PolygonSoup::edited(base, {}, objects.list(6, 7).arrival()));
+}
+
 TEST(EditedSoup, TheFirstPatchThatLiesAgainstAnotherIsNoneOfIt) {
   Objects objects;
   Faces room = prism({{0, 0}, {4, 0}, {4, 4}, {0, 4}}, 0, 4);

@@ -11,6 +11,7 @@
 
 #include "geometry/level_facets.h"
 #include "geometry/polygon_soup.h"
+#include "geometry/shaft.h"
 
 namespace exitance {
 namespace {
@@ -219,21 +220,65 @@ TEST(Level, OfAHairTellsNothingOfTheSolidBehindIt) {
   EXPECT_FALSE(backs(soup, soup.shells()[0], toe, 0, 1));
 }
 
+/// Its top is the second face.
+std::vector<Loop> box(double size, double low, double high) {
+  const double s = size;
+  return {
+      {{0, 0, low}, {0, s, low}, {s, s, low}, {s, 0, low}},   {{0, 0, high}, {s, 0, high}, {s, s, high}, {0, s, high}},
+      {{0, 0, low}, {s, 0, low}, {s, 0, high}, {0, 0, high}}, {{0, s, low}, {0, s, high}, {s, s, high}, {s, s, low}},
+      {{0, 0, low}, {0, 0, high}, {0, s, high}, {0, s, low}}, {{s, 0, low}, {s, s, low}, {s, s, high}, {s, 0, high}}};
+}
+
 TEST(Level, OfABoxUnderAFloorTellsThatItIsBehind) {
-  const double low = -1, z = 0x1p-52;
-  const std::vector<Loop> box = {
-      {{0, 0, low}, {0, 1, low}, {1, 1, low}, {1, 0, low}}, {{0, 0, z}, {1, 0, z}, {1, 1, z}, {0, 1, z}},
-      {{0, 0, low}, {1, 0, low}, {1, 0, z}, {0, 0, z}},     {{0, 1, low}, {0, 1, z}, {1, 1, z}, {1, 1, low}},
-      {{0, 0, low}, {0, 0, z}, {0, 1, z}, {0, 1, low}},     {{1, 0, low}, {1, 1, low}, {1, 1, z}, {1, 0, z}}};
+  const std::vector<Loop> under = box(1, -1, 0x1p-52);
   for (const int side : {1, -1}) {
     const Loop floor = rectangle(-2, -2, 2, 2);
     std::vector<Loop> loops{side > 0 ? floor : turned_over(floor)};
-    loops.insert(loops.end(), box.begin(), box.end());
+    loops.insert(loops.end(), under.begin(), under.end());
     const PolygonSoup soup = soup_of(loops, Planes::rounded);
     ASSERT_EQ(soup.shells().size(), 1u);
     const std::uint32_t top = soup.first_facet(2);
     EXPECT_TRUE(are_level(soup, top, 0, soup.level()));
     EXPECT_TRUE(backs(soup, soup.shells()[0], top, 0, side));
+  }
+}
+
+/// A sheet is level with a box's top and with a patch below, which are not level with each other: the patch covers the
+/// top, and the box hides none of it.
+TEST(Level, OfABoxInAPileTellsThatItIsBehind) {
+  const double level = 3 * kLevel;
+  std::vector<Loop> loops{turned_over(rectangle(0, 0, 3, 3, 3)), rectangle(0, 0, 2, 2, 1 - 0.8 * level)};
+  const std::vector<Loop> solid = box(1.5, 0, 1);
+  loops.insert(loops.end(), solid.begin(), solid.end());
+  loops.push_back(rectangle(0.5, 0.5, 1, 1, 1 - 1.6 * level));
+  const PolygonSoup soup = soup_of(loops, Planes::rounded);
+  ASSERT_EQ(soup.shells().size(), 1u);
+  const std::uint32_t top = soup.first_facet(3), patch = soup.first_facet(8);
+  ASSERT_FALSE(are_level(soup, top, patch, soup.level()));
+  ASSERT_TRUE(std::ranges::binary_search(soup.coplanar(top), patch));
+  ASSERT_TRUE(soup.covers(patch, top));
+  EXPECT_TRUE(backs(soup, soup.shells()[0], top, patch, 1));
+  Shaft shaft(soup, {0, {}}, {patch, {}});
+  std::vector<std::uint32_t> items;
+  EXPECT_EQ(shaft.find_occluders(items), Shaft::Overlap::outside);
+}
+
+/// What hides nothing joins no chain and is in none.
+TEST(Level, OfUnoccludingFacetsMakesNoChains) {
+  const double level = 2 * kLevel;
+  std::vector<Polygon> polygons;
+  for (const double k : {0.0, 0.8, 1.6}) polygons.push_back({rectangle(-2, -2, 2, 2, k * level), {}});
+  for (std::size_t unoccluding = 0; unoccluding < 3; ++unoccluding) {
+    std::vector<Role> roles(3, Role::patch);
+    roles[unoccluding] = Role::unoccluding;
+    const PolygonSoup soup(polygons, roles, {}, 0, Planes::rounded);
+    for (std::uint32_t f = 0; f < 3; ++f) {
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t t = 0; t < 3; ++t) {
+        if (t != unoccluding && (t + 1 == f || f + 1 == t)) expected.push_back(t);
+      }
+      EXPECT_EQ(std::vector(soup.coplanar(f).begin(), soup.coplanar(f).end()), expected) << unoccluding << ' ' << f;
+    }
   }
 }
 

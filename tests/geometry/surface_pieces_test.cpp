@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/edge_contact.h"
+
 namespace exitance {
 namespace {
 
@@ -234,6 +236,13 @@ TEST(SurfacePieces, ContactsMayHoldNearly) {
 }
 
 /// A vertex on an edge, turned, lies beside it; what is farther off than rounding brings it is no T-junction.
+TEST(SurfacePieces, EdgesWhoseLengthUnderflowsAreInContactWithNothing) {
+  const DirectedEdge edge{{1, 1, 1}, {1, 1, 1}, 0}, tiny{{}, {1e-170, 0, 0}, 0};
+  const std::vector<std::uint32_t> piece_of_polygon{0};
+  EXPECT_EQ(edges_in_contact(std::vector{tiny}, {}, piece_of_polygon), std::vector<bool>{false});
+  EXPECT_EQ(edges_in_contact(std::vector{edge}, {}, piece_of_polygon, 1e-15), std::vector<bool>{true});
+}
+
 TEST(SurfacePieces, TJunctionsMayHoldNearly) {
   constexpr double kNear = 0x1p-47 * 3;
   const auto parted_at = [](double z) {

@@ -49,6 +49,26 @@ TEST_F(SceneCheck, NothingToFindInALitRoom) {
   EXPECT_THAT(kinds(report), testing::ElementsAre());
 }
 
+/// One with a hole and one without have one outline and are no duplicates; what lies in the hole lies on the latter.
+TEST_F(SceneCheck, OverlapsOfFacesWithHoles) {
+  Scene scene = furnished("");
+  const auto square = [](double from, double to) {
+    return std::vector<Vec3>{{from, from, 1}, {to, from, 1}, {to, to, 1}, {from, to, 1}};
+  };
+  std::vector<Vec3> hole = square(1, 2);
+  std::ranges::reverse(hole);
+  for (const Polygon& polygon :
+       {Polygon{square(0.5, 2.5), {hole}}, Polygon{square(0.5, 2.5), {}}, Polygon{square(1.25, 1.75), {}}}) {
+    scene.surfaces.push_back(scene.surfaces.front());
+    scene.surfaces.back().polygon = polygon;
+  }
+  const SceneReport report = check_scene(scene);
+  const Finding* overlaps = find(report, FindingKind::overlap_same_facing);
+  ASSERT_TRUE(overlaps);
+  EXPECT_EQ(overlaps->count, 2u);
+  EXPECT_DOUBLE_EQ(overlaps->amount, 3 + 0.25);
+}
+
 TEST_F(SceneCheck, TheCornellPattern) {
   // Five walls, open in front, and a block without a bottom; then the front wall.
   std::string open =

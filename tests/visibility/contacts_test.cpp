@@ -199,6 +199,26 @@ TEST(Contacts, WhatLiesOnTopIsSeen) {
   EXPECT_GT(left_of_error(rows, exact, options), kApproach);
 }
 
+/// Sheets a few roundings apart, not in the order in which they cover each other: that the topmost covers the lowest
+/// only those between them tell.
+TEST(Contacts, OfAPileOfSheetsAreThoseThatAreSeen) {
+  Scene scene = empty_scene();
+  add_box(scene, {-2, -2, 0}, {2, 2, 3}, false, {});
+  for (const double k : {0.9, 1.8, 0.0, 2.7}) {
+    const double z = 1 + k * 0x1p-47 * 3;
+    add(scene, {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}}, {});
+  }
+  const Rows rows(scene);
+  const PointRows exact = rows.exact();
+  EXPECT_GE(exact.statistics.covered_points, 3u);
+  EXPECT_LT(exact.statistics.closure_max_defect, 1e-12);
+  for (const Estimator estimator : {Estimator::kernel, Estimator::hemisphere}) {
+    const PointRows sampled = rows.by_rays({.rays = 64, .estimator = estimator});
+    EXPECT_EQ(sampled.statistics.covered_points, exact.statistics.covered_points) << to_string(estimator);
+  }
+  EXPECT_LT(left_of_error(rows, exact, {.rays = 64}), kApproach);
+}
+
 /// In a furnished room a fifth of all sample points lie in contacts.
 TEST(Contacts, RowsOfFurnishedRoomsApproachExactOnes) {
   const Rows rows(make_furnished_room(200, 1));
