@@ -25,7 +25,7 @@ using State = Sight::State;
 
 template <class N>
 struct Whole {
-  N x{}, y{}, z{};
+  N x = N(0), y = N(0), z = N(0);  // a lazy number that nothing was put in has no value
 
   template <class M>
   Whole<M> as() const {
