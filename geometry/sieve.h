@@ -84,7 +84,7 @@ class Sieve {
   Verdict judge(const Plane& plane, const FirstCorners& facet, int facing) const {
     if (!facet.all) return Verdict::unsure;
     const Seen seen = see(facet);
-    const auto& [x, y, z, size, vertex] = seen;
+    const Doubles &x = seen.x, &y = seen.y, &z = seen.z, &size = seen.size;  // not by name: Clang 14 captures none
     // The facet's own plane and sides, w × w' from each corner to the next. |w_y w'_z| + |w_z w'_y| and its like are at
     // most |w|₁|w'|₁; with two roundings of differences, of a product and of the subtraction, and four of the product
     // with a corner, all in all 8 u |w|₁|w'|₁|v|₁. Twice that is given.
