@@ -386,7 +386,9 @@ std::vector<Real> Truth::longitudes() {
       if (dot(d, d) > 1e-30L * size_ * size_) try_direction(d, points[i].second);
     }
   }
-  for (const auto& [body, p] : points) {
+  for (const auto& point : points) {
+    const std::size_t body = point.first;
+    const Point& p = point.second;
     for (std::size_t i = 0; i < edges.size(); ++i) {
       const Edge& e = edges[i];
       const Point along = e.b - e.a, to = p - e.a;
