@@ -33,17 +33,6 @@ bool are_level(const PolygonSoup& soup, std::uint32_t f, std::uint32_t g, double
   return level_area(loop_of(corners_f), loop_of(corners_g), near) > 0;
 }
 
-bool any_are_level(const PolygonSoup& soup) {
-  for (std::uint32_t f = 0; f < soup.facets().size(); ++f) {
-    if (!soup.is_present(f)) continue;
-    const auto is_level = [&](std::uint32_t g) {
-      return soup.facets()[f].polygon != soup.facets()[g].polygon && are_level(soup, f, g, soup.level());
-    };
-    if (std::ranges::any_of(soup.coplanar(f), is_level)) return true;
-  }
-  return false;
-}
-
 bool backs(const PolygonSoup& soup, const Shell& shell, std::uint32_t own, std::uint32_t f, int side) {
   const Plane &plane = soup.facets()[f].plane, &of_own = soup.facets()[own].plane;
   const double above = soup.pile() * norm(plane.normal), below = -soup.pile() * norm(of_own.normal);

@@ -10,9 +10,6 @@ namespace exitance {
 /// Whether two facets are level within `near` [m]; the same in either order.
 bool are_level(const PolygonSoup& soup, std::uint32_t f, std::uint32_t g, double near);
 
-/// Whether any facets of different polygons are, within soup.level(), whichever way they face.
-bool any_are_level(const PolygonSoup& soup);
-
 /// Whether a convex shell lies behind facet f, nowhere more than soup.pile() before it, as the shell's facet `own`,
 /// which is coplanar() with f and faces the same way as its side, says: by the corners of the shell or, where f is the
 /// narrower one, by those of f. side: 1 for the front of f, −1 for its back.

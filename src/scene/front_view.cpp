@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "geometry/contact.h"
-#include "geometry/level_facets.h"
+#include "geometry/level.h"
 #include "geometry/surface_pieces.h"
-#include "src/scene/patch_mesh.h"
 #include "src/scene/scene_check.h"
+#include "src/scene/scene_extent.h"
 
 namespace exitance {
 bool sees_only_fronts(const Scene& scene) {
@@ -19,10 +19,8 @@ bool sees_only_fronts(const Scene& scene) {
   const auto shows_its_front = [](const SurfacePiece& piece) {
     return piece.area == 0 || (piece.closed && (piece.enclosed ? piece.volume > 0 : piece.volume < 0));
   };
-  if (!found.open_edges.empty() || !std::ranges::all_of(found.pieces, shows_its_front) ||
-      !coplanar_overlaps(polygons).empty())
-    return false;
-  return !any_are_level(make_soup(scene));
+  return found.open_edges.empty() && std::ranges::all_of(found.pieces, shows_its_front) &&
+         coplanar_overlaps(polygons, kLevel * extent(scene)).empty();
 }
 
 }  // namespace exitance

@@ -374,7 +374,11 @@ TEST_F(EditedRoom, MustBeMadeAnewWhereAChainOfFourCloses) {
   EXPECT_FALSE(PolygonSoup::edited(base, {}, objects.list(6, 7).arrival()));
   EXPECT_FALSE(PolygonSoup::edited(anew, closed.of_object[6], {}));
   objects.faces[6] = placed(link, 0, {0, 0, 1});  // far from all of them
-  EXPECT_TRUE(PolygonSoup::edited(base, {}, objects.list(6, 7).arrival()));
+  const auto once = PolygonSoup::edited(base, {}, objects.list(6, 7).arrival());
+  ASSERT_TRUE(once);
+  EXPECT_TRUE(PolygonSoup::edited(*once, once->arrived(), {}));
+  objects.faces[6] = link;
+  EXPECT_FALSE(PolygonSoup::edited(*once, {}, objects.list(6, 7).arrival()));
 }
 
 TEST(EditedSoup, TheFirstPatchThatLiesAgainstAnotherIsNoneOfIt) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry/contact.h"
 #include "geometry/level_facets.h"
 #include "geometry/polygon_soup.h"
 #include "geometry/shaft.h"
@@ -177,13 +178,18 @@ TEST(Level, IsNotWhatMeetsAtATJunctionFarFromTheOrigin) {
   }
 }
 
-TEST(Level, OfAnyPairOfASoup) {
+TEST(Level, OfAnyPairOfPolygons) {
+  const auto any_overlap = [](const std::vector<Loop>& loops, double extent) {
+    std::vector<Polygon> polygons;
+    for (const Loop& loop : loops) polygons.push_back({loop, {}});
+    return !coplanar_overlaps(polygons, kLevel * extent).empty();
+  };
   const Loop floor = rectangle(-2, -2, 2, 2), wall = {{2, -2, 0}, {2, 2, 0}, {2, 2, 3}, {2, -2, 3}};
-  EXPECT_FALSE(any_are_level(soup_of({floor, wall}, Planes::rounded)));
-  EXPECT_TRUE(any_are_level(soup_of({floor, wall, rectangle(-1, -1, 1, 1, 0x1p-52)}, Planes::rounded)));
-  EXPECT_TRUE(any_are_level(soup_of({floor, rectangle(-1, -1, 1, 1)}, Planes::rounded)));
-  EXPECT_FALSE(any_are_level(soup_of({rectangle(-2, -2, 0, 2), rectangle(0, -2, 2, 2)}, Planes::rounded)));
-  EXPECT_FALSE(any_are_level(soup_of({}, Planes::rounded)));
+  EXPECT_FALSE(any_overlap({floor, wall}, 3));
+  EXPECT_TRUE(any_overlap({floor, wall, rectangle(-1, -1, 1, 1, 0x1p-52)}, 3));
+  EXPECT_TRUE(any_overlap({floor, rectangle(-1, -1, 1, 1)}, 2));
+  EXPECT_FALSE(any_overlap({rectangle(-2, -2, 0, 2), rectangle(0, -2, 2, 2)}, 2));
+  EXPECT_FALSE(any_overlap({}, 0));
 }
 
 /// Whether polygon 1 counts as in the plane of polygon 0, and that of 0 in that of 1.
@@ -243,8 +249,8 @@ TEST(Level, OfABoxUnderAFloorTellsThatItIsBehind) {
   }
 }
 
-/// A sheet is level with a box's top and with a patch below, which are not level with each other: the patch covers the
-/// top, and the box hides none of it.
+/// A patch is level with a box's top and with a later one below, which are not level with each other: that one covers
+/// the top, and the box hides none of it.
 TEST(Level, OfABoxInAPileTellsThatItIsBehind) {
   const double level = 3 * kLevel;
   std::vector<Loop> loops{turned_over(rectangle(0, 0, 3, 3, 3)), rectangle(0, 0, 2, 2, 1 - 0.8 * level)};
