@@ -127,11 +127,12 @@ void PolygonSoup::update_coplanar(std::uint32_t first, std::span<const std::uint
   }
 }
 
+/// Whether it lies in the plane of a facet of another polygon.
 bool PolygonSoup::lies_on_others(std::uint32_t f) const {
   return std::ranges::any_of(coplanar(f), [&](std::uint32_t t) { return facets_[t].polygon != facets_[f].polygon; });
 }
 
-/// Whether another facet that is not in the plane of f is no farther from it than the ends of chains are.
+/// Whether a facet of another polygon that is not in the plane of f is no farther from it than the ends of chains are.
 bool PolygonSoup::is_piled(std::uint32_t f) const {
   if (pile() == 0) return false;
   std::vector<std::uint32_t> near;

@@ -112,8 +112,8 @@ class PolygonSoup {
   /// polygons, facets and shells keep their numbers; those that are gone are there still, but in nothing that is
   /// searched. Takes time and memory by what goes and comes and by what lies beside that, not by all. None where it
   /// cannot be told from that alone what others become, and the soup must be made anew: what goes or comes meets edges
-  /// of others or, with edges that it leaves open, their faces; patches lie against each other where none did; facets
-  /// come to be a few roundings apart (level_chain.h) or, where some are, lie on others; the extent changes; the spare
+  /// of others or, with edges that it leaves open, their faces; patches lie against each other where none did; it is a
+  /// few roundings off others (level_chain.h) or, where any are or were, lies on some; the extent changes; the spare
   /// room is used up. No two threads may make soups from `before`, or from soups that share with it, at a time.
   static std::optional<PolygonSoup> edited(const PolygonSoup& before, PolygonRange gone, const Arrival& arrival);
 
@@ -149,7 +149,7 @@ class PolygonSoup {
   std::span<const Shell> shells() const { return shells_; }
 
   /// Other facets that lie exactly in the plane of facet f, or of the same polygon within rounding (2^-40 of f's size),
-  /// and touch its box, and those that are level with it (Planes), one by one or in a chain (level_chain.h), ascending.
+  /// and touch its box, and those level with it (Planes) or, of what occludes, in a chain (level_chain.h), ascending.
   std::span<const std::uint32_t> coplanar(std::uint32_t f) const { return coplanar_[f]; }
 
   /// Whether facet t, one of coplanar(f), covers the front of f where they overlap (Role). Facets of one polygon never
@@ -175,7 +175,7 @@ class PolygonSoup {
   double extent() const { return extent_; }
   /// [m] How far apart facets may lie that count as in one plane: 0 where only coordinates count.
   double level() const { return planes_ == Planes::rounded ? kLevel * extent_ : 0; }
-  /// [m] The same by way of others between them (level_chain.h): of 65 sheets at most, each level with the next.
+  /// [m] The same by way of others (level_chain.h): 65 sheets, each level with the next, are no farther apart.
   double pile() const { return 64 * level(); }
 
  private:
@@ -220,7 +220,7 @@ class PolygonSoup {
   SpatialIndex index_;
   double extent_ = 0;
   Planes planes_ = Planes::as_written;
-  bool piled_ = false;  ///< some facets are apart as the ends of chains are
+  bool piled_ = false;  ///< some facets are, or once were, apart as ends of chains are
 };
 
 }  // namespace exitance
