@@ -127,9 +127,12 @@ void PolygonSoup::update_coplanar(std::uint32_t first, std::span<const std::uint
   }
 }
 
-/// Whether it lies in the plane of a facet of another polygon.
-bool PolygonSoup::lies_on_others(std::uint32_t f) const {
-  return std::ranges::any_of(coplanar(f), [&](std::uint32_t t) { return facets_[t].polygon != facets_[f].polygon; });
+/// Whether one of the facets first … last − 1 lies in the plane of any other than these.
+bool PolygonSoup::lie_on_others(std::uint32_t first, std::uint32_t last) const {
+  for (std::uint32_t f = first; f < last; ++f) {
+    if (std::ranges::any_of(coplanar(f), [&](std::uint32_t t) { return t < first || last <= t; })) return true;
+  }
+  return false;
 }
 
 /// Whether a facet of another polygon that is not in the plane of f is no farther from it than the ends of chains are.
@@ -175,9 +178,7 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   if (extent_leaving == before.extent_ && extent_coming < before.extent_) return std::nullopt;
   if (before.joins_others(gone_first, gone_last, beside)) return std::nullopt;
   // What goes may be the link of a chain, what comes may become one.
-  for (std::uint32_t f = gone_first; f < gone_last; ++f) {
-    if (before.piled_ && before.lies_on_others(f)) return std::nullopt;
-  }
+  if (before.piled_ && before.lie_on_others(gone_first, gone_last)) return std::nullopt;
   // What is behind the walls of one room depends on where others are.
   const auto has_room = [&](std::size_t first, std::size_t last) {
     return std::ranges::any_of(std::span(store.behind).subspan(first, last - first), is_of_room);
@@ -212,8 +213,9 @@ std::optional<PolygonSoup> PolygonSoup::edited(const PolygonSoup& before, Polygo
   after.update_coplanar(first, beside);
   after.touched_ = beside;
   for (std::uint32_t f = first; f < store.used; ++f) after.touched_.push_back(f);
+  if (after.piled_ && after.lie_on_others(first, store.used)) return std::nullopt;
   for (std::uint32_t f = first; f < store.used; ++f) {
-    if ((after.piled_ && after.lies_on_others(f)) || after.is_piled(f)) return std::nullopt;
+    if (after.is_piled(f)) return std::nullopt;
   }
   if (!store.behind_known &&
       std::ranges::any_of(after.touched_, [&](std::uint32_t f) { return after.is_against_patch(f); }))

@@ -112,9 +112,10 @@ class PolygonSoup {
   /// polygons, facets and shells keep their numbers; those that are gone are there still, but in nothing that is
   /// searched. Takes time and memory by what goes and comes and by what lies beside that, not by all. None where it
   /// cannot be told from that alone what others become, and the soup must be made anew: what goes or comes meets edges
-  /// of others or, with edges that it leaves open, their faces; patches lie against each other where none did; it is a
-  /// few roundings off others (level_chain.h) or, where any are or were, lies on some; the extent changes; the spare
-  /// room is used up. No two threads may make soups from `before`, or from soups that share with it, at a time.
+  /// of others or, with edges that it leaves open, their faces; patches lie against each other where none did; what
+  /// comes is a few roundings off others (level_chain.h) or, where any are or were, what goes or comes lies on others;
+  /// the extent changes; the spare room is used up. No two threads may make soups from `before`, or from soups that
+  /// share with it, at a time.
   static std::optional<PolygonSoup> edited(const PolygonSoup& before, PolygonRange gone, const Arrival& arrival);
 
   PolygonSoup(const PolygonSoup&) = delete;  // only edits share
@@ -193,7 +194,7 @@ class PolygonSoup {
   void build_index();
   bool lies_in_plane(std::uint32_t t, std::uint32_t f) const;
   bool is_coplanar(std::uint32_t t, std::uint32_t f) const;
-  bool lies_on_others(std::uint32_t f) const;
+  bool lie_on_others(std::uint32_t first, std::uint32_t last) const;
   bool is_piled(std::uint32_t f) const;
   void find_facets(const Box& box, std::vector<std::uint32_t>& found) const;
   bool joins_others(std::uint32_t first, std::uint32_t last, std::vector<std::uint32_t>& beside) const;

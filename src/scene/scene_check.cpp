@@ -207,11 +207,20 @@ class SceneChecker {
     const auto compare = [](const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
       return std::ranges::lexicographical_compare(a, b, {}, order, order);
     };
-    std::map<std::vector<Vec3>, bool, decltype(compare)> seen(compare);  // whether without holes, too
+    using Loops = std::vector<std::vector<Vec3>>;  // the outer one first
+    const auto compare_all = [&](const Loops& a, const Loops& b) {
+      return std::ranges::lexicographical_compare(a, b, compare);
+    };
+    std::set<Loops, decltype(compare_all)> seen(compare_all);
     for (std::uint32_t i = 0; i < polygons_.size(); ++i) {
-      const auto [outline, is_first] = seen.try_emplace(canonical(polygons_[i].outer), false);
-      if (!is_first) add(FindingKind::duplicate_face, surface_of_[i], norm(area_vector(polygons_[i])));
-      if (!polygons_[i].holes.empty() || !std::exchange(outline->second, true)) distinct_.push_back(i);
+      Loops loops{canonical(polygons_[i].outer)};
+      for (const std::vector<Vec3>& hole : polygons_[i].holes) loops.push_back(canonical(hole));
+      std::sort(loops.begin() + 1, loops.end(), compare);
+      if (seen.insert(std::move(loops)).second) {
+        distinct_.push_back(i);
+      } else {
+        add(FindingKind::duplicate_face, surface_of_[i], norm(area_vector(polygons_[i])));
+      }
     }
   }
 

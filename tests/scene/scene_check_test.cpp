@@ -57,16 +57,26 @@ TEST_F(SceneCheck, OverlapsOfFacesWithHoles) {
   };
   std::vector<Vec3> hole = square(1, 2);
   std::ranges::reverse(hole);
-  for (const Polygon& polygon :
-       {Polygon{square(0.5, 2.5), {hole}}, Polygon{square(0.5, 2.5), {}}, Polygon{square(1.25, 1.75), {}}}) {
+  const auto add = [&](const Polygon& polygon) {
     scene.surfaces.push_back(scene.surfaces.front());
     scene.surfaces.back().polygon = polygon;
-  }
+  };
+  const Polygon frame{square(0.5, 2.5), {hole}};
+  add(frame);
+  add({square(0.5, 2.5), {}});
+  add({square(1.25, 1.75), {}});
   const SceneReport report = check_scene(scene);
+  EXPECT_FALSE(find(report, FindingKind::duplicate_face));
   const Finding* overlaps = find(report, FindingKind::overlap_same_facing);
   ASSERT_TRUE(overlaps);
   EXPECT_EQ(overlaps->count, 2u);
   EXPECT_DOUBLE_EQ(overlaps->amount, 3 + 0.25);
+
+  add(frame);
+  const SceneReport twice = check_scene(scene);
+  ASSERT_TRUE(find(twice, FindingKind::duplicate_face));
+  EXPECT_EQ(find(twice, FindingKind::duplicate_face)->count, 1u);
+  EXPECT_EQ(find(twice, FindingKind::overlap_same_facing)->count, 2u);
 }
 
 TEST_F(SceneCheck, TheCornellPattern) {
