@@ -92,9 +92,9 @@ class ExactObserver final : public Observer {
   double obstructions() {
     double seen = 0;
     for (std::uint32_t f = 0; f < soup_.facets().size(); ++f) {
+      if (!soup_.is_present(f)) continue;
       const Role role = soup_.role(soup_.facets()[f].polygon);
-      if ((role == Role::sheet || role == Role::solid_face) && soup_.is_present(f))
-        seen += view_.form_factor({f, {}}, kPointTolerance).F;
+      if (role == Role::sheet || role == Role::solid_face) seen += view_.form_factor({f, {}}, kPointTolerance).F;
     }
     return seen;
   }
