@@ -18,7 +18,8 @@ PropertyTrial same_bits(const Opinion& opinion, std::span<const Opinion> of_form
 }
 
 PropertyTrial not_more(const Opinion& opinion, std::span<const Opinion> of_forms) {
-  return {std::fmax(0, of_forms[0].F - opinion.F), opinion.margin + of_forms[0].margin};
+  const double more = of_forms[0].F - opinion.F;
+  return {more < 0 ? 0 : more, opinion.margin + of_forms[0].margin};  // no number: broken
 }
 
 PropertyTrial sum(const Opinion& opinion, std::span<const Opinion> of_forms) {

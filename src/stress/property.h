@@ -14,9 +14,9 @@ namespace exitance {
 
 /// What a property came to for one question.
 struct PropertyTrial {
-  double defect = 0;   ///< by how much it does not hold
-  double allowed = 0;  ///< what the margins of the answers allow
-  bool holds() const { return defect <= allowed; }
+  double defect = 0;                                ///< by how much it does not hold
+  double allowed = 0;                               ///< what the margins of the answers allow
+  bool holds() const { return defect <= allowed; }  ///< not where either is no number
 };
 
 struct Property {

@@ -7,7 +7,7 @@ namespace exitance {
 Verdict judge(const Opinion& opinion, const OracleAnswer& truth) {
   constexpr long double kLeast = 1e-15L;
   const long double error = std::fabs(opinion.F - truth.F);
-  Verdict verdict{error > static_cast<long double>(opinion.margin) || std::isnan(opinion.F), static_cast<double>(error),
+  Verdict verdict{!(error <= static_cast<long double>(opinion.margin)), static_cast<double>(error),
                   truth.F >= kLeast ? static_cast<double>(error / truth.F) : 0};
   switch (opinion.visibility) {
     case Visibility::away:

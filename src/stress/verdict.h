@@ -24,9 +24,9 @@ struct Truth {
   std::function<Verdict(const Opinion&)> judge;
 };
 
-/// Of points. Wrong: further from the truth than the margin and the rounding of F; or, where the contender commits
-/// itself, blocked though some area is seen, open though some is hidden, away though some is above the horizon and
-/// faces the point.
+/// Of points. Wrong: further from the truth than the margin, or no number, or without a margin that is one; or, where
+/// the contender commits itself, blocked though some area is seen, open though some is hidden, away though some is
+/// above the horizon and faces the point.
 Verdict judge(const Opinion& opinion, const OracleAnswer& truth);
 
 /// A set of classes, by their bits.

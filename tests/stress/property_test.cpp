@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "src/stress/point_contender.h"
 #include "src/stress/stage.h"
@@ -72,6 +73,32 @@ TEST_P(EveryProperty, HoldsForTheExactContenderAndFindsAWrongOne) {
   }
   EXPECT_GT(applied, 0);
   EXPECT_GT(broken, 0) << property.name;
+}
+
+TEST_P(EveryProperty, DoesNotHoldBetweenAnswersThatAreNoNumbers) {
+  const Property& property = point_properties()[GetParam()];
+  const Question question = room();
+  const auto no_number = [](const Question& q) {
+    Opinion opinion = right(q);
+    opinion.F = std::numeric_limits<double>::quiet_NaN();
+    return opinion;
+  };
+  const auto no_margin = [](const Question& q) {
+    Opinion opinion = right(q);
+    opinion.margin = std::numeric_limits<double>::quiet_NaN();
+    return opinion;
+  };
+  int applied = 0;
+  for (int k = 0; k < 12; ++k) {
+    for (const Ask& ask : {Ask(no_number), Ask(no_margin)}) {
+      Random random(property.name + std::to_string(k));
+      const auto trial = try_property(property, question, right(question), ask, random);
+      if (!trial) continue;
+      ++applied;
+      EXPECT_FALSE(trial->holds());
+    }
+  }
+  EXPECT_GT(applied, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Properties, EveryProperty, testing::Range(std::size_t{0}, point_properties().size()),

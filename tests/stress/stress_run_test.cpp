@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -37,6 +38,18 @@ TEST(StressRun, FindsNothingWrongOfTheExactContender) {
   EXPECT_TRUE(report.failures.empty());
   for (const PropertyTally& property : total.properties) EXPECT_GT(property.tried, 0u);
   EXPECT_GT(total.stages.exact, 0u);
+}
+
+TEST(Judge, WhatIsNoNumberIsWrong) {
+  constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+  const OracleAnswer truth{0.25L, 1, 0.5L, false};
+  Opinion right, unsaid, unproven;
+  right.F = unproven.F = 0.25;
+  unsaid.F = unproven.margin = kNoNumber;
+  unsaid.margin = 1;
+  EXPECT_FALSE(judge(right, truth).is_wrong);
+  EXPECT_TRUE(judge(unsaid, truth).is_wrong);
+  EXPECT_TRUE(judge(unproven, truth).is_wrong);
 }
 
 /// Answers, and takes all that is seen for hidden where that is next to nothing; its bound claims the contrary.
