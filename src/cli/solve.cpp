@@ -81,9 +81,10 @@ std::string summary(const Report& r) {
   line("iterations", fmt::format("{}, residual {:.3g}", r.iterations, r.residual));
   const bool points = r.receivers == "points";
   line("closure defect",
-       fmt::format("{} ({} {} measured, {} in contact)",
+       fmt::format("{} ({} {} measured, {} in contact{})",
                    number_or(r.closure_max_defect, r.measured_points > 0 ? "none, the scene is open" : "not measured"),
-                   r.measured_points, points ? "sample points" : "elements", r.covered_points));
+                   r.measured_points, points ? "sample points" : "elements", r.covered_points,
+                   points ? "" : " or in view of backs"));
   const std::string quadrature = r.links  ? " (thresholds and points of links)"
                                  : points ? " (quadrature of sample points)"
                                           : "";

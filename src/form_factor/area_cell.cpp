@@ -95,24 +95,38 @@ std::pair<Bend, Bend> halves(const Vec3& a, const Vec3& b, const Bend& bend) {
   return {{a + share * (bend.control - a), half}, {b + share * (bend.control - b), half}};
 }
 
-/// Across the bent sides; or between them by a straight line, if that can't meet them.
+/// Across the bent sides, or between them by a straight line, which must not meet them: where a bent side starts along
+/// the side next to it, as an event through a contact does, that is told only by whether the halves are regular.
 std::pair<AreaCell, AreaCell> bisect_bent(const AreaCell& cell) {
   const Vec3 &a = cell.corner[0], &b = cell.corner[1], &c = cell.corner[2],
              &d = cell.corners == 3 ? cell.corner[2] : cell.corner[3];
   const double along = norm(b - a) + norm(c - d), across = norm(d - a) + norm(c - b);
   const Vec3 m = first_side(cell, 0.5).at, n = opposite_side(cell, 0.5).at;
   const double height = std::max(norm(m - middle(a, b)), norm(n - middle(c, d)));
-  if (along >= across || 8 * height > across) {
-    const auto [one, other] = halves(a, b, cell.bend);
-    const auto [near_d, near_c] = halves(d, c, cell.opposite);
-    return {{{a, m, n, d}, cell.corners, one, near_d}, {{m, b, c, n}, cell.corners, other, near_c}};
+  if (along < across && 8 * height <= across) {
+    const Vec3 p = middle(a, d), q = middle(b, c), normal = vector_area(cell);
+    const AreaCell near{{a, b, q, p}, 4, cell.bend};
+    const AreaCell far = cell.corners == 3 ? AreaCell{{p, q, c, p}, 3} : AreaCell{{p, q, c, d}, 4, {}, cell.opposite};
+    if (is_regular(near, normal) && is_regular(far, normal)) return {near, far};
   }
-  const Vec3 p = middle(a, d), q = middle(b, c);
-  if (cell.corners == 3) return {{{a, b, q, p}, 4, cell.bend}, {{p, q, c, p}, 3}};
-  return {{{a, b, q, p}, 4, cell.bend}, {{p, q, c, d}, 4, {}, cell.opposite}};
+  const auto [one, other] = halves(a, b, cell.bend);
+  const auto [near_d, near_c] = halves(d, c, cell.opposite);
+  return {{{a, m, n, d}, cell.corners, one, near_d}, {{m, b, c, n}, cell.corners, other, near_c}};
 }
 
 }  // namespace
+
+// The integral of the map's vectors, however it folds.
+Vec3 vector_area(const AreaCell& cell) {
+  constexpr int kOrder = 4;
+  const Rule& rule = rule_of(kOrder);
+  Vec3 total;
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const SidePoint from = first_side(cell, rule.node[i]), to = opposite_side(cell, rule.node[i]);
+    total = total + rule.weight[i] * cross(from.along + 0.5 * (to.along - from.along), to.at - from.at);
+  }
+  return total;
+}
 
 double AreaCell::area() const {
   if (!is_straight()) {
@@ -130,6 +144,23 @@ SidePoint first_side(const AreaCell& cell, double s) {
 }
 SidePoint opposite_side(const AreaCell& cell, double s) {
   return point_of(cell.corners == 3 ? cell.corner[2] : cell.corner[3], cell.corner[2], cell.opposite, s);
+}
+
+bool is_regular(const AreaCell& cell, const Vec3& normal) {
+  // Between the sides the map is linear, so that it folds at one of them first; near a corner it does so where a bent
+  // side runs beside the one next to it.
+  constexpr std::array kPlaces{0.0,   1.0 / 256, 1.0 / 64, 1.0 / 16, 0.125, 0.25, 0.375,      0.5,
+                               0.625, 0.75,      0.875,    15.0 / 16, 63.0 / 64, 255.0 / 256, 1.0};
+  constexpr double kRounding = 1e-12;
+  for (const double s : kPlaces) {
+    const SidePoint from = first_side(cell, s), to = opposite_side(cell, s);
+    const Vec3 across = to.at - from.at;
+    const auto folds = [&](const Vec3& along) {
+      return dot(cross(along, across), normal) < -kRounding * norm(along) * norm(across) * norm(normal);
+    };
+    if (folds(from.along) || folds(to.along)) return false;
+  }
+  return true;
 }
 
 std::vector<AreaCell> cells_of(std::span<const Vec3> loop) {
@@ -195,13 +226,15 @@ std::pair<AreaCell, AreaCell> bisect(const AreaCell& cell) {
 void gauss_points(const AreaCell& cell, int order, std::vector<WeightedPoint>& points) {
   points.clear();
   const Rule& rule = rule_of(order);
+  const Vec3 normal = cell.is_straight() ? Vec3{} : vector_area(cell);
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const SidePoint from = first_side(cell, rule.node[i]), to = opposite_side(cell, rule.node[i]);
     const Vec3 across = to.at - from.at, change = to.along - from.along;
     for (std::size_t j = 0; j < rule.node.size(); ++j) {
       const double t = rule.node[j];
-      const Vec3 along = from.along + t * change;
-      points.push_back({from.at + t * across, rule.weight[i] * rule.weight[j] * norm(cross(along, across))});
+      const Vec3 along = from.along + t * change, area = cross(along, across);
+      const double size = dot(area, normal) < 0 ? -norm(area) : norm(area);
+      points.push_back({from.at + t * across, rule.weight[i] * rule.weight[j] * size});
     }
   }
 }

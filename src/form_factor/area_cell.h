@@ -37,12 +37,20 @@ struct AreaCell {
   double area() const;
 };
 
+/// The cell's area as a vector normal to it. Not 0 where only the corners lie in one line.
+Vec3 vector_area(const AreaCell& cell);
+
 /// A point of a side, and the derivative there; s from 0 to 1.
 struct SidePoint {
   Vec3 at, along;
 };
 SidePoint first_side(const AreaCell& cell, double s);     ///< from corner 0 to 1
 SidePoint opposite_side(const AreaCell& cell, double s);  ///< from corner 3 to 2; of a triangle, its last corner
+
+/// Whether the map of the square onto a cell, which gauss_points() tells of, does not fold, in the plane of `normal`, on
+/// its side: seen at places along both sides, the denser the nearer to corners. Sides may start from one point, or
+/// along each other.
+bool is_regular(const AreaCell& cell, const Vec3& normal);
 
 /// Cuts a convex loop into cells.
 std::vector<AreaCell> cells_of(std::span<const Vec3> loop);
@@ -53,12 +61,12 @@ std::vector<AreaCell> cut(const AreaCell& cell, const CutPlane& plane);
 /// Whether the plane has part of a convex loop on each side, by more than rounding: then cut() would cut.
 bool crosses(std::span<const Vec3> loop, const CutPlane& plane);
 
-/// Halves a cell across its longer side.
+/// Halves a cell across its longer side; a bent one only so that the halves are regular, if either way is.
 std::pair<AreaCell, AreaCell> bisect(const AreaCell& cell);
 
 struct WeightedPoint {
   Vec3 point;
-  double weight = 0;  ///< all weights of a rule sum to the cell's area
+  double weight = 0;  ///< all weights of a rule sum to the cell's area; negative where the map of a bent cell folds
 };
 
 /// Product Gauss rule of 2 … kHighestOrder points along each side. The square is mapped onto the cell by straight lines

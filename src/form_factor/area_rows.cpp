@@ -1,8 +1,6 @@
 #include "src/form_factor/area_rows.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
 #include "src/form_factor/pair_sample.h"
 
@@ -49,17 +47,6 @@ AreaRows area_rows(const PatchMesh& mesh, const PolygonSoup& soup, const PairRun
   result.pairs = pairs_by_class(run.rows, n);
   result.resumed = run.resumed;
   const FormFactorMatrix elements = matrix_of(run.rows, n);
-  const std::vector<double> sums = row_sums(elements);
-  const Contacts contacts(soup);
-  for (std::uint32_t e = 0; e < n; ++e) {
-    const auto errors = elements.row_error(e);
-    result.largest_row_error = std::max(result.largest_row_error, std::accumulate(errors.begin(), errors.end(), 0.0));
-    if (may_be_covered(soup, contacts, mesh.pieces_of(mesh.elements[e]))) {
-      ++result.covered_elements;
-    } else {
-      result.closure_max_defect = std::max(result.closure_max_defect, std::fabs(sums[e] - 1));
-    }
-  }
   constexpr std::size_t kPairs = 64;
   const PairSample sample = sample_pairs(scene, run.rows, options.pairs, kPairs, seed);
   if (!sample.complete) return {};

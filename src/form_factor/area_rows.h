@@ -17,11 +17,6 @@ struct AreaRows {
   FormFactorMatrix F;                    ///< elements × patches
   std::array<std::uint64_t, 4> pairs{};  ///< of elements, by class (pairs_by_class)
   std::uint32_t resumed = 0;             ///< rows of elements that the checkpoint held
-  /// Elements that something in their own plane covers, wholly or in part, or might: they need not see 1 in all.
-  std::uint64_t covered_elements = 0;
-  /// Largest |Σ_q F_eq − 1| of the other elements: the defect of a closed scene, without meaning in an open one.
-  double closure_max_defect = 0;
-  double largest_row_error = 0;  ///< Σ_q F_error of the worst row: what closure may miss
   /// Largest |A_i F_ij − A_j F_ji| / min(A_i, A_j) of some partial pairs of elements, each F integrated over its own
   /// receiver; none where there is no such pair.
   std::optional<double> reciprocity_max_defect;

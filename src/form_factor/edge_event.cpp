@@ -51,21 +51,6 @@ Vec3 tangent_of(const EdgeEvent& event, const Vec3& x, const Vec3& s, const Vec3
   return size > 0 ? (by_t / size) * s - (by_s / size) * t : Vec3{};
 }
 
-/// Whether a cell's map does not fold.
-bool is_regular(const AreaCell& cell, const Vec3& normal) {
-  constexpr int kSteps = 8;
-  for (int i = 0; i <= kSteps; ++i) {
-    const double s = static_cast<double>(i) / kSteps;
-    const SidePoint from = first_side(cell, s), to = opposite_side(cell, s);
-    const Vec3 across = to.at - from.at;
-    // Two sides may start from one point.
-    if (across == Vec3{}) continue;
-    if (!(dot(cross(from.along, across), normal) > 0)) return false;
-    if (cell.corners == 4 && !(dot(cross(to.along, across), normal) > 0)) return false;
-  }
-  return true;
-}
-
 /// The event's arc from P to Q, in a plane.
 std::optional<Bend> bend_between(const EdgeEvent& event, const Vec3& P, const Vec3& Q, const Vec3& normal) {
   const Vec3 chord = Q - P, unit = normalized(normal), s = normalized(chord), t = cross(unit, s);

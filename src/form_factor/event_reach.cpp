@@ -119,7 +119,8 @@ std::vector<LineStretch> EventReach::of_vertex_edge(const CutPlane& plane, const
   LineStretch reach = widened(
       sight.through(pivot, sight.place_of(from), sight.place_of(to), edge_first ? Order::before : Order::beyond),
       longer);
-  if (way == Way::vertex_edge || way == Way::edge_vertex) {
+  // A vertex that touches the source is seen against it from all along the trace.
+  if ((way == Way::vertex_edge || way == Way::edge_vertex) && source_plane_.at(vertex) > longer) {
     const auto chord = sight.chord_of(source_, false);
     if (!chord) return {};
     reach.keep_within(

@@ -193,14 +193,15 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
   cell.integral = cell.point_error = 0;
   const bool compare = cell.uncut.empty();
   std::uint64_t outline = 0;
-  double least = 1, greatest = 0;
+  double least = 1, greatest = 0, folded = 0;
   for (const WeightedPoint& p : scratch_) {
+    folded += std::max(0.0, -p.weight);
     const PointFormFactor f = look(view, p.point, point_tolerance);
     const bool front = f.side == Side::front;
     const double F = front ? f.F : 0;
     weighted_.push_back(p.weight * F);
     cell.integral += p.weight * F;
-    if (front) cell.point_error += p.weight * f.error;
+    if (front) cell.point_error += std::fabs(p.weight) * f.error;
     least = std::min(least, F);
     greatest = std::max(greatest, F);
     if (compare) {
@@ -262,6 +263,11 @@ void ObstructedExchange::measure(Viewpoint& view, Cell& cell, int order, double 
   if (cell.mixed) cell.error = std::max(cell.error, truncation.last + kMixed * (greatest - least) * area);
   if (cell.mixed && greatest == 0) cell.error = kUnnoticed * cell.most * area;
   if (!cell.uncut.empty()) cell.error += kUnnoticed * cell.most * area;
+  // Where a map folds, points lie outside of the cell.
+  cell.error += folded * cell.most;
+  // However little is known, the cell sees something between nothing and all that it may see.
+  const double possible = std::max(cell.integral, cell.most * area - cell.integral);
+  if (!(cell.error <= possible)) cell.error = possible;
 }
 
 /// Looks for events that happen in a cell but not between its points, from one of which the outline was seen last.

@@ -20,13 +20,19 @@ bool in_one_line(const SeenEdge& e, const SeenEdge& g) {
   });
 }
 
-/// Stretches along the line of an edge, counted once where another edge in that line continues them.
+/// Stretches along the line of an edge, counted once where another edge in that line continues them, and none that have
+/// no length. Where edges of other lines end, too, two parts of what is seen only touch: seen from beside there, the
+/// stretches are apart or one.
 std::ptrdiff_t stretches_along(const SeenEdge& line, std::span<const SeenEdge> edges) {
-  std::vector<SeenEdge> along;
-  std::ranges::copy_if(edges, std::back_inserter(along), [&](const SeenEdge& e) { return in_one_line(line, e); });
+  std::vector<SeenEdge> along, others;
+  for (const SeenEdge& e : edges) (in_one_line(line, e) ? along : others).push_back(e);
+  const auto touches = [](const Vec3& p, const Vec3& q) { return norm(p - q) <= kTouching; };
   return std::ranges::count_if(along, [&](const SeenEdge& e) {
-    return std::ranges::none_of(
-        along, [&](const SeenEdge& f) { return norm(f.to - e.from) <= (f.id == e.id ? 0 : kTouching); });
+    if (e.from == e.to) return false;
+    const bool continues = std::ranges::any_of(
+        along, [&](const SeenEdge& f) { return f.id != e.id && touches(f.to, e.from); });
+    return !continues || std::ranges::any_of(
+                             others, [&](const SeenEdge& g) { return touches(g.from, e.from) || touches(g.to, e.from); });
   });
 }
 

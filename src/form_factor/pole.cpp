@@ -125,11 +125,13 @@ PoleError corner_poles(std::span<const SeenEdge> edges, const Vec3& x, std::span
                        const AreaCell& cell, int order) {
   const std::vector<Vec3> places = places_of(cell);
   const auto& c = cell.corner;
-  // Of a quadrilateral two corners may be the same point.
-  const Vec3 of_three = cross(c[1] - c[0], c[2] - c[0]),
-             normal = cell.corners == 3 ? of_three : of_three + cross(c[2] - c[0], c[3] - c[0]);
-  const double area = cell.area(), share = norm(of_three) / (norm(of_three) + norm(normal - of_three));
-  const Vec3 middle = (1.0 / 3) * (c[0] + c[2] + share * c[1] + (1 - share) * c[3]);  // a triangle's share is 1
+  const Vec3 normal = vector_area(cell);
+  std::vector<WeightedPoint> points;
+  gauss_points(cell, 2, points);
+  const double area = cell.area();
+  if (!(area > 0)) return {};
+  Vec3 middle;
+  for (const WeightedPoint& p : points) middle = middle + (p.weight / area) * p.point;
   PoleError result;
   double worst = 0;
   // `differs`: what is seen from a point beside the corner and from the middle, by how much.

@@ -17,8 +17,9 @@ std::vector<SeenEdge> edges_of(const PolygonSoup& soup, const Source& source, st
 /// Events on the receiver of a source and of what stands between them, items of the soup's index: planes of the
 /// surfaces themselves, contacts in the receiver's plane, a vertex of the one against an edge of the other, and
 /// occluders against each other; each stretch of a line once, and only where a line of sight to the source shows it
-/// (EventReach). Events of three edges are none of these, and curved; nor are those of occluders against each other
-/// where there are too many pairs of them.
+/// (EventReach). Events of three edges are none of these, and curved; nor are those at the horizon, of a vertex in the
+/// receiver's plane, where what appears counts for nothing at first; nor those of occluders against each other where
+/// there are too many pairs of them.
 std::vector<VisualEvent> visual_events(const PolygonSoup& soup, const Source& receiver, const Source& source,
                                        std::span<const std::uint32_t> items);
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <random>
 
+#include "src/form_factor/area_closure.h"
 #include "src/form_factor/area_rows.h"
 #include "src/form_factor/point_run.h"
 #include "src/form_factor/sampled_area_rows.h"
@@ -143,9 +144,12 @@ class SceneSolver {
     const auto pairs = [&](PairClass kind) { return rows.pairs[static_cast<std::size_t>(kind)]; };
     result_.statistics.pairs = {pairs(PairClass::facing_away), pairs(PairClass::open), pairs(PairClass::blocked),
                                 pairs(PairClass::partial)};
-    result_.statistics.covered_points = rows.covered_elements;
-    result_.statistics.closure_max_defect = rows.closure_max_defect;
-    result_.closure_error = rows.largest_row_error;
+    if (rows.F.rows() > 0) {
+      const AreaClosure closure = area_closure(result_.mesh, result_.soup, rows.F, result_.closed);
+      result_.statistics.covered_points = closure.not_judged;
+      result_.statistics.closure_max_defect = closure.max_defect;
+      result_.closure_error = closure.largest_row_error;
+    }
     result_.reciprocity_max_defect = rows.reciprocity_max_defect;
     result_.resumed_rows = rows.resumed;
     return std::move(rows.F);

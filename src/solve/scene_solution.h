@@ -81,7 +81,7 @@ struct SceneSolution {
   Receivers receivers = Receivers::points;
   std::optional<RayOptions> rays;  ///< as asked
   /// Of `measured_points` elements: all of them, or a sample spread evenly where there is no matrix. Of receivers
-  /// `area` the covered ones are those that may be.
+  /// `area` the covered ones of a closed scene are those whose closure is not judged (AreaClosure).
   PointRowStatistics statistics;
   std::uint64_t measured_points = 0;
   double closure_error = 0;  ///< what errors of form factors allow of the closure defect; negligible for sample points

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "geometry/predicates.h"
 
@@ -47,6 +49,54 @@ TEST(AreaCell, PartsMakeTheWhole) {
     EXPECT_TRUE(cut(part, oblique).empty());
   }
   EXPECT_NEAR(area, 3, 1e-14);
+}
+
+double area_of(const AreaCell& cell) {
+  return integral(cell, kHighestOrder, [](const Vec3&) { return 1.0; });
+}
+
+/// An event through a contact starts along the side next to it, so that no straight line between both keeps to one side
+/// of it; seen in a plane turned against the axes.
+TEST(AreaCell, HalvesOfACellWhoseBentSideStartsAlongTheNextOneDoNotFold) {
+  const Vec3 u{2.0 / 7, 3.0 / 7, 6.0 / 7}, v{-6.0 / 7, -2.0 / 7, 3.0 / 7}, normal = cross(u, v);
+  const auto at = [&](double x, double y) { return Vec3{4, 2, 2} + x * u + y * v; };
+  const double h = 1.0 / 6;
+  // From the contact a to b; its tangents at a and at b meet on the side from a to the apex.
+  const AreaCell cell{{at(0, 0), at(1, -0.1), at(1, h), at(1, h)}, 3, {at(0.46, 0.46 * h), 1.003}};
+  ASSERT_TRUE(is_regular(cell, normal));
+  std::vector<AreaCell> parts{cell};
+  double area = area_of(cell);
+  for (int level = 0; level < 10; ++level) {
+    std::vector<AreaCell> halves;
+    for (const AreaCell& part : parts) {
+      const auto [one, other] = bisect(part);
+      EXPECT_TRUE(is_regular(one, normal)) << level;
+      EXPECT_TRUE(is_regular(other, normal)) << level;
+      EXPECT_NEAR(area_of(one) + area_of(other), area_of(part), 1e-14 * area) << level;
+      halves.push_back(one);
+      halves.push_back(other);
+    }
+    parts = std::move(halves);
+  }
+}
+
+/// What a folded map sends outside of the cell is taken away again.
+TEST(AreaCell, PointsOfAFoldCountBackwards) {
+  const Vec3 normal{0, 0, 1};
+  // The bent side, y = 2 x (1 - x), runs through the straight one, y = 0.4.
+  const AreaCell cell{{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 0.4, 0}, Vec3{0, 0.4, 0}}, 4, {{0.5, 1, 0}, 1}};
+  EXPECT_FALSE(is_regular(cell, normal));
+  std::vector<WeightedPoint> points;
+  gauss_points(cell, 8, points);
+  double sum = 0, least = 0;
+  for (const WeightedPoint& p : points) {
+    sum += p.weight;
+    least = std::min(least, p.weight);
+  }
+  EXPECT_LT(least, 0);
+  EXPECT_NEAR(sum, 0.4 - 1.0 / 3, 1e-15);
+  EXPECT_TRUE(is_regular(kTriangle, normal));
+  EXPECT_FALSE(is_regular(kTriangle, {0, 0, -1}));
 }
 
 TEST(AreaCell, APlaneThroughACornerOrAnEdgeLeavesTheCellWhole) {

@@ -123,7 +123,7 @@ PolygonSoup soup_of(const KnownPair& pair) {
     for (const auto& face : body) polygons.push_back({face, {}});
     roles.resize(polygons.size(), body.size() > 1 ? Role::solid_face : Role::sheet);
   }
-  return PolygonSoup(polygons, roles);
+  return PolygonSoup(polygons, roles, {}, 0, Planes::rounded);
 }
 
 KnownPair random_pair(int number) {

@@ -120,6 +120,60 @@ std::vector<SinglePair> single_pairs() {
   return pairs;
 }
 
+/// Halves of two walls, and two screens that each touch one of them with an edge: events that start in the contacts
+/// run beside it at first.
+KnownPair screens_on_walls() {
+  return {{{4, 0, 4}, {4, 4, 0}, {4, 0, 0}},
+          {{4, 4, 4}, {0, 4, 4}, {0, 4, 0}},
+          {{{{2, 2, 0}, {2, 3, 0}, {2, 3, 2}, {2, 2, 2}}}, {{{4, 2, 0}, {3, 2, 0}, {3, 2, 2}, {4, 2, 2}}}}};
+}
+
+/// Ceiling and wall of a room past three sides of a box that hangs from the ceiling, and a triangle beside it.
+KnownPair hanging_sides() {
+  return {{{0, 4, 4}, {4, 4, 4}, {4, 0, 4}, {0, 0, 4}},
+          {{4, 4, 4}, {0, 4, 4}, {0, 4, 0}, {4, 4, 0}},
+          {{{{2, 1, 3}, {2, 2, 3}, {3, 1, 3}}},
+           {{{1.5, 0, 3}, {2.5, 0, 3}, {2.5, 0, 4}, {1.5, 0, 4}}},
+           {{{2.5, 0, 3}, {2.5, 1, 3}, {2.5, 1, 4}, {2.5, 0, 4}}},
+           {{{1.5, 1, 3}, {1.5, 0, 3}, {1.5, 0, 4}, {1.5, 1, 4}}}}};
+}
+
+TEST(ExchangeTruth, EventsThatStartBesideContacts) {
+  for (const KnownPair& pair : {screens_on_walls(), hanging_sides()}) {
+    for (const KnownPair& p : {pair, turned(pair)}) {
+      const ExchangeTruth t = exchange_truth(p.receiver, p.source, p.occluders);
+      const double A = area_of(p.receiver), F = static_cast<double>(t.integral) / A;
+      for (const double tolerance : {1e-6, 1e-8, 1e-9, 1e-10}) {
+        const PairFormFactor f = product_of(p, tolerance);
+        EXPECT_LE(std::fabs(f.F - F), f.F_error + static_cast<double>(t.error) / A) << tolerance;
+        EXPECT_LE(f.F_error, tolerance);
+      }
+    }
+  }
+}
+
+/// Coordinates are as exact as at the origin; points between them are not, and errors tell.
+TEST(ExchangeTruth, FarFromTheOrigin) {
+  for (const KnownPair& pair : {screens_on_walls(), hanging_sides()}) {
+    const ExchangeTruth t = exchange_truth(pair.receiver, pair.source, pair.occluders);
+    const double A = area_of(pair.receiver), F = static_cast<double>(t.integral) / A;
+    for (const double offset : {12345678.0, 1e9}) {
+      KnownPair far = pair;
+      const auto shift = [&](Loop& loop) {
+        for (Vec3& p : loop) p = p + Vec3{offset, offset, offset};
+      };
+      shift(far.receiver);
+      shift(far.source);
+      for (ConvexBody& body : far.occluders) std::ranges::for_each(body, shift);
+      for (const double tolerance : {1e-4, 1e-6}) {
+        const PairFormFactor f = product_of(far, tolerance);
+        EXPECT_LE(std::fabs(f.F - F), f.F_error + static_cast<double>(t.error) / A) << offset << ' ' << tolerance;
+        EXPECT_LE(f.F_error, 1e-4) << offset << ' ' << tolerance;
+      }
+    }
+  }
+}
+
 TEST(ExchangeTruth, AgreesWithClosedFormsAlongAnyAxis) {
   for (const SinglePair& p : single_pairs()) {
     if (!p.F) continue;

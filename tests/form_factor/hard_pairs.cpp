@@ -176,6 +176,33 @@ KnownPair slivers(Random& random) {
   return pair;
 }
 
+/// A triangle of three corners, or all.
+Loop part_of(Loop loop, Random& random) {
+  if (random.whole(0, 1)) return loop;
+  loop.erase(loop.begin() + random.whole(0, static_cast<int>(loop.size()) - 1));
+  return loop;
+}
+
+KnownPair rooms(Random& random) {
+  constexpr int kSteps = 4;
+  const auto any = [&] { return range(random, 0, 1, kSteps); };
+  const ConvexBody walls = box({0, 1}, {0, 1}, {0, 1});
+  const int one = random.whole(0, 5), other = (one + random.whole(1, 5)) % 6;
+  KnownPair pair{part_of(turned_over(walls[static_cast<std::size_t>(one)]), random),
+                 part_of(turned_over(walls[static_cast<std::size_t>(other)]), random),
+                 {}};
+  const int count = random.whole(1, 4);
+  for (int k = 0; k < count; ++k) {
+    if (random.whole(0, 1)) {
+      pair.occluders.push_back(box(any(), any(), any()));
+    } else {
+      const int axis = random.whole(0, 2);
+      pair.occluders.push_back({part_of(rectangle(axis, lattice(random, 0.25, 0.75, kSteps), any(), any()), random)});
+    }
+  }
+  return pair;
+}
+
 }  // namespace
 
 KnownPair hard_pair(std::string_view family, int number) {
@@ -195,6 +222,8 @@ KnownPair hard_pair(std::string_view family, int number) {
     pair = standing(random);
   } else if (family == "slivers") {
     pair = slivers(random);
+  } else if (family == "rooms") {
+    pair = rooms(random);
   } else if (family == "sheets") {
     return random_pair(1'000'000 + number);
   } else {

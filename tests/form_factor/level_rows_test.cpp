@@ -9,9 +9,12 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 
+#include "src/form_factor/area_closure.h"
 #include "src/form_factor/area_rows.h"
 #include "src/form_factor/point_rows.h"
+#include "src/scene/scene_check.h"
 #include "src/visibility/exact_visibility.h"
 
 namespace exitance {
@@ -362,15 +365,16 @@ TEST(LevelRows, OfAreasAreThoseOfTheSceneThatIsNotTurned) {
     SCOPED_TRACE(c.name);
     const auto rows_of = [&](const Turn& turn) {
       const Rows rows(c.scene, turn, 0);
-      return area_rows(rows.mesh, rows.soup, {.pairs = {.tolerance = kTolerance}}, 1);
+      AreaRows areas = area_rows(rows.mesh, rows.soup, {.pairs = {.tolerance = kTolerance}}, 1);
+      return std::pair(area_closure(rows.mesh, rows.soup, areas.F, is_closed(c.scene)), std::move(areas.F));
     };
-    const AreaRows expected = rows_of({});
+    const auto [expected_closure, expected] = rows_of({});
     for (const Turn& turn : turns(18, 2)) {
-      const AreaRows found = rows_of(turn);
-      EXPECT_NEAR(found.closure_max_defect, expected.closure_max_defect,
-                  found.largest_row_error + expected.largest_row_error);
-      for (std::size_t e = 0; e < found.F.rows(); ++e) {
-        const auto p = row(found.F, e), q = row(expected.F, e);
+      const auto [closure, found] = rows_of(turn);
+      EXPECT_NEAR(closure.max_defect, expected_closure.max_defect,
+                  closure.largest_row_error + expected_closure.largest_row_error);
+      for (std::size_t e = 0; e < found.rows(); ++e) {
+        const auto p = row(found, e), q = row(expected, e);
         for (std::size_t j = 0; j < p.size(); ++j) EXPECT_NEAR(p[j], q[j], 2 * kTolerance) << e << ' ' << j;
       }
     }

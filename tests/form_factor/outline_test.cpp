@@ -39,6 +39,25 @@ TEST(Outline, AStretchThatContinuesInAnotherEdgeOfItsLineIsOne) {
   EXPECT_FALSE(same_lines(whole, split));
 }
 
+/// As seen from a point on an event: what is seen on either side of a vertex touches there.
+TEST(Outline, StretchesBetweenPartsThatOnlyTouchAreNotOne) {
+  const Vec3 vertex = kA + 0.7 * (kB - kA), beside{0.5, 0.1, 1};
+  const std::array whole{stretch(1, kA, kB), stretch(2, kB, kC), stretch(3, kC, kA), stretch(5, vertex, beside),
+                         stretch(6, beside, vertex)};
+  for (const std::uint64_t other : {1, 4}) {
+    const std::array parts{stretch(1, kA, kB, 0, 0.7),  stretch(5, vertex, beside), stretch(6, beside, vertex),
+                           stretch(other, kA, kB, 0.7), stretch(2, kB, kC),         stretch(3, kC, kA)};
+    EXPECT_FALSE(same_lines(whole, parts));
+    EXPECT_FALSE(same_lines(parts, whole));
+  }
+}
+
+TEST(Outline, AStretchWithoutLengthDoesNotCount) {
+  const std::array whole{stretch(1, kA, kB), stretch(2, kB, kC), stretch(3, kC, kA)};
+  const std::array with_a_point{stretch(1, kA, kB), stretch(1, kA, kB, 0.4, 0.4), stretch(2, kB, kC), stretch(3, kC, kA)};
+  EXPECT_TRUE(same_lines(whole, with_a_point));
+}
+
 TEST(Outline, NothingIsNotTheSameAsSomething) {
   const std::array some{stretch(1, kA, kB)};
   EXPECT_FALSE(same_lines(some, {}));

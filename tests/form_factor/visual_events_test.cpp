@@ -73,6 +73,34 @@ TEST(VisualEvents, DoNotMatterWhereSomethingElseHidesThem) {
   EXPECT_TRUE(stretches_at(past({kPlate, {rectangle(0.125, -2, -2, 3, 3)}}), 0.2).empty());
 }
 
+/// A box hangs from the source's plane: a vertex that touches the source is seen against it past an edge below, wherever
+/// that is seen.
+TEST(VisualEvents, OfAVertexThatTouchesTheSourceMatterAllAlong) {
+  const Vec3 vertex{0.75, 0.25, 1};
+  for (const Vec3& turn : {Vec3{}, Vec3{0.125, -0.25, 0}}) {
+    const KnownPair pair{rectangle(0, -4, -4, 4, 4),
+                         facing_down({{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}),
+                         {{{vertex, vertex + Vec3{-0.5, 0, 0}, vertex + Vec3{-0.25, 0.125, -0.125}}},
+                          {{Vec3{-3, -1, 0.5}, Vec3{3, 0.25, 0.5} + turn, Vec3{3, -2, 0.5}}}}};
+    const PolygonSoup soup = soup_of(pair);
+    const CutPlane expected{cross(pair.occluders[1][0][0] - vertex, pair.occluders[1][0][1] - vertex), vertex};
+    const std::vector<VisualEvent> events = visual_events(soup, {0, {}}, {1, {}}, all_occluders(soup));
+    // The edge's trace from the vertex: wherever a line through the vertex meets the edge first.
+    EXPECT_TRUE(std::ranges::any_of(events, [&](const VisualEvent& e) {
+      const auto lies_on = [&](const Vec3& foot) {
+        const double t = dot(e.along, foot - e.plane.point);
+        return std::fabs(e.plane.at(foot)) < 1e-12 && t >= e.stretch.from && t <= e.stretch.to;
+      };
+      const auto foot = [&](double share) {
+        const Vec3 at = pair.occluders[1][0][0] + share * (pair.occluders[1][0][1] - pair.occluders[1][0][0]);
+        return vertex + 2.0 * (at - vertex);
+      };
+      return lies_on(foot(0.4)) && lies_on(foot(0.6)) && norm(cross(e.plane.normal, expected.normal)) <
+                                                             1e-12 * norm(e.plane.normal) * norm(expected.normal);
+    }));
+  }
+}
+
 /// The first two outlines between these points that differ, next to each other; nothing if they agree at both ends.
 struct Change {
   Vec3 here, there;
@@ -115,11 +143,13 @@ bool explains(const VisualEvent& event, const Change& c) {
 }
 
 /// Wherever the outline changes from one point to the next, an event that was kept is the reason, or one of three edges
-/// that no straight line knows of.
+/// that no straight line knows of, or one at the horizon.
 TEST(VisualEvents, NoneIsLeftOutThatChangesWhatIsSeen) {
   int changes = 0, curved = 0;
-  for (const std::string_view family : {"boxes", "thin", "slivers", "plates"}) {
+  for (const std::string_view family : {"boxes", "thin", "slivers", "plates", "rooms"}) {
     for (int number = 0; number < 40; ++number) {
+      // Where turned rooms are in contact, rounding tells what is seen.
+      if (family == "rooms" && number % 2 != 0) continue;
       const KnownPair pair = hard_pair(family, number);
       const PolygonSoup soup = soup_of(pair);
       // Receiver and source as facets 0 and 1.
@@ -129,8 +159,9 @@ TEST(VisualEvents, NoneIsLeftOutThatChangesWhatIsSeen) {
       const Loop& loop = pair.receiver;
       Random random("visual events " + std::string(family) + std::to_string(number));
       const auto place = [&] {
-        const double s = random.real(0.01, 0.99), t = random.real(0.01, 0.99);
-        return loop[0] + s * (loop[1] - loop[0]) + t * (loop[3] - loop[0]);
+        double s = random.real(0.01, 0.99), t = random.real(0.01, 0.99);
+        if (loop.size() == 3 && s + t > 1) s = 1 - s, t = 1 - t;
+        return loop[0] + s * (loop[1] - loop[0]) + t * (loop.back() - loop[0]);
       };
       for (int k = 0; k < 30; ++k) {
         const std::optional<Change> change = observer.change_between(place(), place());
@@ -138,8 +169,13 @@ TEST(VisualEvents, NoneIsLeftOutThatChangesWhatIsSeen) {
         ++changes;
         if (std::ranges::any_of(events, [&](const VisualEvent& e) { return explains(e, *change); })) continue;
         const auto by_three = events_between(change->from_here, change->from_there);
-        EXPECT_TRUE(std::ranges::any_of(
-            by_three, [&](const EdgeEvent& e) { return !e.plane() && e.at(change->here) * e.at(change->there) <= 0; }))
+        const Plane& receiver = soup.facets()[0].plane;
+        const auto at_horizon = [&](const EdgeEvent& e) {
+          return std::fabs(dot(receiver.normal, e.plane()->point - receiver.origin)) < 1e-12 * norm(receiver.normal);
+        };
+        EXPECT_TRUE(std::ranges::any_of(by_three, [&](const EdgeEvent& e) {
+          return (!e.plane() || at_horizon(e)) && e.at(change->here) * e.at(change->there) <= 0;
+        }))
             << family << ' ' << number << " from " << change->here.x << ' ' << change->here.y << ' ' << change->here.z;
         ++curved;
       }
