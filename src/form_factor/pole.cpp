@@ -152,7 +152,10 @@ PoleError corner_poles(std::span<const SeenEdge> edges, const Vec3& x, std::span
   };
   const auto add_end = [&](const SeenEdge& e, const Vec3& at) {
     add_corner(at, [&](const Vec3& near) {
-      return std::fabs(contribution(e, near, normal) - contribution(e, middle, normal));
+      const double beside = contribution(e, near, normal);
+      double most = std::fabs(beside - contribution(e, middle, normal));
+      for (const Vec3& p : places) most = std::max(most, std::fabs(beside - contribution(e, p, normal)));
+      return most;
     });
   };
   // An edge that turns sweeps over those that it meets.

@@ -24,7 +24,8 @@ PoleError crossing_poles(std::span<const SeenEdge> edges, const AreaCell& cell, 
 /// About a corner that ends an edge as seen from x, in the cell's plane or at a distance d from it, the form factor is
 /// a function of the direction, and smooth only beyond d. A cell much wider than d that begins beside the corner has so
 /// little area there, about d², that its coefficients fall as if it saw nothing of this: what is seen there differs by
-/// V, what the edge contributes from beside the corner less what it contributes from the cell's middle. In the interval
+/// V, what the edge contributes from beside the corner less what it contributes from the cell's middle or corners,
+/// whichever differs most: by chance one of them sees as much. In the interval
 /// [−1, 1] from the cell's point nearest to the corner to the one farthest from it, the corner is a point z of the
 /// complex plane, and a rule of order n errs by d² V |z + √(z² − 1)|^-2n. Edges end at vertices and where they pierce
 /// a surface that bounds what is seen. One that stands on the cell's plane but is seen elsewhere turns about that
