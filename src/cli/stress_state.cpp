@@ -73,7 +73,10 @@ std::optional<StressState> read_stress_state(const std::filesystem::path& file, 
     }
     StressState state{.done = json.at("done"), .tallies = {}, .found = {}, .unjudged = {}};
     for (const Json& t : json.at("tallies")) state.tallies.push_back(tally_of(t));
-    for (const Json& f : json.at("found")) state.found.push_back({f.at(0), f.at(1), f.at(2), f.at(3)});
+    for (const Json& f : json.at("found")) {
+      state.found.push_back({f.at(0), f.at(1), f.at(2), {}});
+      if (!f.at(3).is_null()) state.found.back().exception = f.at(3).get<std::string>();
+    }
     for (const Json& u : json.at("unjudged")) state.unjudged.push_back({u.at(0), u.at(1)});
     return state;
   } catch (const Json::exception& wrong) {
@@ -89,7 +92,9 @@ void write_stress_state(const std::filesystem::path& file, const StressKey& key,
             {"found", Json::array()},
             {"unjudged", Json::array()}};
   for (const StressTally& tally : state.tallies) json["tallies"].push_back(json_of(tally));
-  for (const StressFinding& f : state.found) json["found"].push_back({f.number, f.contender, f.what, f.threw});
+  for (const StressFinding& f : state.found) {
+    json["found"].push_back({f.number, f.contender, f.what, f.exception ? Json(*f.exception) : Json(nullptr)});
+  }
   for (const StressUnjudged& u : state.unjudged) json["unjudged"].push_back({u.number, u.exception});
   write_whole_file(file, [&](std::ostream& out) { out << json << '\n'; });
 }

@@ -522,7 +522,8 @@ ExchangeTruth Truth::sample(std::uint64_t seed) {
   }
   truth.integral = sum / kShifts;
   const Real variance = std::max(Real(0), squares / kShifts - truth.integral * truth.integral) / (kShifts - 1);
-  truth.error = 6 * std::sqrt(variance) + 6 * largest / (kShifts * kDirections);
+  truth.standard_error = std::sqrt(variance);
+  truth.error = 6 * truth.standard_error + 6 * largest / (kShifts * kDirections);
   truth.evaluations = evaluations_;
   return truth;
 }

@@ -18,10 +18,12 @@ class OutOfReach : public std::runtime_error {
 struct PairOracleAnswer {
   long double F = 0, F_reverse = 0;
   long double error = 0, reverse_error = 0;
+  long double standard_error = 0, reverse_standard_error = 0;  ///< of samples; within the error
 };
 
 enum class Care : std::uint8_t {
-  sampled,  ///< along 12,776 directions for each pair of pieces: to some 1e-5, in a tenth of a second
+  sampled,  ///< along 12,776 directions for each pair of pieces, in a tenth of a second: mostly right to some 1e-5, but
+            ///< what is seen in few directions may be missed, which makes the error some 6e-4
   full      ///< to some 1e-8, along two axes, which takes ten seconds; the error covers what these say of each other
 };
 

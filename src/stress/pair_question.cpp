@@ -11,12 +11,21 @@ namespace {
 constexpr double kTolerance = 1e-4;
 constexpr std::uint64_t kPoints = 5'000;  // what needs more keeps its error
 
-Verdict judge(const Opinion& opinion, const PairOracleAnswer& truth) {
-  constexpr long double kLeast = 1e-15L;
+Verdict judge(const Opinion& opinion, const PairOracleAnswer& truth, long double error, long double reverse_error) {
   const long double apart = std::fabs(opinion.F - truth.F), back = std::fabs(opinion.F_reverse - truth.F_reverse);
-  const bool is_within = apart <= opinion.margin + truth.error && back <= opinion.reverse_margin + truth.reverse_error;
-  const long double beyond = std::fmax(0.0L, apart - truth.error);
-  return {!is_within, static_cast<double>(beyond), truth.F >= kLeast ? static_cast<double>(beyond / truth.F) : 0};
+  const bool is_within = apart <= opinion.margin + error && back <= opinion.reverse_margin + reverse_error;
+  return verdict_of(!is_within, apart <= error ? 0 : apart - error, truth.F);
+}
+
+/// As integrated in full, or as sampled where that gives no reason to ask further: a value that is off by more than
+/// chance allows does, even where it is within what samples may miss.
+Verdict judge(const Opinion& opinion, const Question& question, const PairOracleAnswer& sampled) {
+  constexpr long double kChance = 6;  // standard errors of eight shifts: beyond them once in some thousand times
+  const Verdict first =
+      judge(opinion, sampled, kChance * sampled.standard_error, kChance * sampled.reverse_standard_error);
+  if (!first.is_wrong) return first;
+  const PairOracleAnswer truth = oracle_pair_form_factors(question, Care::full);
+  return judge(opinion, truth, truth.error, truth.reverse_error);
 }
 
 }  // namespace
@@ -49,10 +58,8 @@ Truth pair_truth(const Question& question) {
   const Truth::Seen seen = truth.F <= truth.error                         ? Truth::Seen::none
                            : open.F - truth.F <= open.error + truth.error ? Truth::Seen::all
                                                                           : Truth::Seen::some;
-  return {seen, static_cast<double>(truth.F), [question, truth](const Opinion& opinion) {
-            const Verdict verdict = judge(opinion, truth);
-            return verdict.is_wrong ? judge(opinion, oracle_pair_form_factors(question, Care::full)) : verdict;
-          }};
+  return {seen, static_cast<double>(truth.F),
+          [question, truth](const Opinion& opinion) { return judge(opinion, question, truth); }};
 }
 
 }  // namespace exitance

@@ -125,7 +125,9 @@ std::optional<PropertyTrial> try_property(const Property& property, const Questi
   if (forms.empty()) return std::nullopt;
   std::vector<Opinion> opinions;
   for (const Question& form : forms) opinions.push_back(ask(form));
-  return property.judge(opinion, opinions);
+  PropertyTrial trial = property.judge(opinion, opinions);
+  if (std::isnan(trial.defect)) trial.defect = INFINITY;
+  return trial;
 }
 
 PropertyTrial try_closure(const PointQuestion& question) {

@@ -143,9 +143,15 @@ bool reaches_into(const ExactLoop& loop, const ExactItem& shell) {
 }
 
 std::vector<std::uint32_t> items_of(const PolygonSoup& soup) {
+  const auto facets = static_cast<std::uint32_t>(soup.facets().size());
   std::vector<std::uint32_t> items;
-  soup.index().find(soup.index().bounds(), items);
-  std::ranges::sort(items);
+  for (std::uint32_t f = 0; f < facets; ++f) {
+    const std::uint32_t shell = soup.facets()[f].shell;
+    if (shell == kNone || !soup.shells()[shell].convex) items.push_back(f);
+  }
+  for (std::uint32_t s = 0; s < soup.shells().size(); ++s) {
+    if (soup.shells()[s].convex) items.push_back(facets + s);
+  }
   return items;
 }
 

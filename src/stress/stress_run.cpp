@@ -106,6 +106,7 @@ class StressRun {
         saved = Clock::now();
       }
     }
+    if (options_.save && report.complete) options_.save(state_);  // making failures small may take long
     report.questions = state_.done;
     report.failures = failures();
     report.unjudged = unjudged();
@@ -179,17 +180,16 @@ class StressRun {
       std::vector<StressFinding> wrong;
       Opinion opinion;
       const auto start = Clock::now();
-      const bool answers = !exception_of([&] { opinion = contender.ask(question, seed_of(what.name)); });
+      const auto thrown = exception_of([&] { opinion = contender.ask(question, seed_of(what.name)); });
       tally.seconds = seconds_since(start);
       tally.questions = 1;
       tally.stages = opinion.stages;
       tally.extended = opinion.extended;
       tally.worst_margin = opinion.margin;
-      if (truth) seen_by(*truth, tally) = 1;
       if (options_.oracle && !truth) tally.unjudged = 1;
-      if (!answers) {
+      if (thrown) {
         tally.wrong = 1;
-        wrong.push_back({number, c, names_.size(), true});
+        wrong.push_back({number, c, names_.size(), thrown});
       } else if (truth) {
         Verdict verdict;
         if (const auto exception = exception_of([&] { verdict = truth->judge(opinion); })) {
@@ -203,11 +203,12 @@ class StressRun {
         tally.worst_relative_error = verdict.relative_error;
         if (verdict.is_wrong) wrong.push_back({number, c, names_.size()});
       }
-      for (std::size_t p = 0; answers && options_.properties && contender.has_properties && p < names_.size(); ++p) {
+      if (truth && tally.unjudged == 0) seen_by(*truth, tally) = 1;
+      for (std::size_t p = 0; !thrown && options_.properties && contender.has_properties && p < names_.size(); ++p) {
         std::optional<PropertyTrial> trial;
-        if (exception_of([&] { trial = try_one(p, what.name, contender, question, opinion); })) {
+        if (const auto of_form = exception_of([&] { trial = try_one(p, what.name, contender, question, opinion); })) {
           tally.properties[p] = {1, 1, 0};
-          wrong.push_back({number, c, p, true});
+          wrong.push_back({number, c, p, of_form});
         } else if (trial) {
           tally.properties[p] = {1, trial->holds() ? 0u : 1u, trial->defect};
           if (!trial->holds()) wrong.push_back({number, c, p});
@@ -270,7 +271,7 @@ class StressRun {
     };
     const auto fails = [&](const Question& question) {
       if (stopped()) return false;  // then it stays as it is
-      if (found.threw) return throws(question).has_value();
+      if (found.exception) return throws(question) == found.exception;
       bool wrong = false;
       return !exception_of([&] { wrong = is_wrong(question); }) && wrong;
     };
@@ -282,7 +283,7 @@ class StressRun {
                           .F = std::numeric_limits<double>::quiet_NaN(),
                           .truth = {}};
     const Question question = failure.asked[0];
-    if (found.threw) failure.exception = throws(question).value_or("");
+    failure.exception = found.exception.value_or("");
     exception_of([&] { failure.F = ask(question).F; });
     if (options_.oracle && !stopped()) exception_of([&] { failure.truth = options_.kind->truth(question).F; });
     if (!is_answer && names_[found.what] != kClosure) {

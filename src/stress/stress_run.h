@@ -44,7 +44,7 @@ struct StressTally {
 struct StressFinding {
   std::uint64_t number = 0;             ///< of the question
   std::size_t contender = 0, what = 0;  ///< what: the property, or their number for the answer
-  bool threw = false;                   ///< instead of answering
+  std::optional<std::string> exception = {};  ///< what it says, where one was thrown instead of an answer
 };
 
 /// A question on which the oracle threw.

@@ -4,11 +4,15 @@
 
 namespace exitance {
 
-Verdict judge(const Opinion& opinion, const OracleAnswer& truth) {
+Verdict verdict_of(bool is_wrong, long double error, long double true_F) {
   constexpr long double kLeast = 1e-15L;
+  if (std::isnan(error)) error = INFINITY;
+  return {is_wrong, static_cast<double>(error), true_F >= kLeast ? static_cast<double>(error / true_F) : 0};
+}
+
+Verdict judge(const Opinion& opinion, const OracleAnswer& truth) {
   const long double error = std::fabs(opinion.F - truth.F);
-  Verdict verdict{!(error <= static_cast<long double>(opinion.margin)), static_cast<double>(error),
-                  truth.F >= kLeast ? static_cast<double>(error / truth.F) : 0};
+  Verdict verdict = verdict_of(!(error <= static_cast<long double>(opinion.margin)), error, truth.F);
   switch (opinion.visibility) {
     case Visibility::away:
       verdict.is_wrong = verdict.is_wrong || truth.F_open != 0;

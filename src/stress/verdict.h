@@ -13,9 +13,12 @@ namespace exitance {
 
 struct Verdict {
   bool is_wrong = false;
-  double error = 0;           ///< of F
+  double error = 0;           ///< of F; infinite where it is no number
   double relative_error = 0;  ///< where the true F is at least 1e-15, else 0
 };
+
+/// Of a true F, and an error of what is said of it; one that is no number counts as infinite.
+Verdict verdict_of(bool is_wrong, long double error, long double true_F);
 
 /// What an oracle says of one question.
 struct Truth {

@@ -156,6 +156,37 @@ TEST(AreaQuestions, MissedAndFalseShadowsAreFound) {
   }
 }
 
+/// Shafts and shadows: each property holds of right answers, and not where a form of the question is answered otherwise.
+TEST(AreaQuestions, EveryPropertyFindsAWrongAnswer) {
+  const Question question = squares({sheet(rectangle(0.5, 0.25, 0.25, 0.5, 0.75)),
+                                     sheet({{0.5, 0, 0.25}, {1, 0, 0.25}, {1, 0.5, 0.375}, {0.5, 0.25, 0.25}}),
+                                     box({0.5, 0.5, 0.5}, {0.75, 0.75, 0.75})});
+  for (const char* kind : {"shafts", "shadows"}) {
+    const Contender exact = question_kind_named(kind).contender_named("exact");
+    const auto right = [&](const Question& q) { return exact.ask(q, 0); };
+    const auto wrong = [&](const Question& q) {
+      Opinion opinion = right(q);
+      opinion.visibility = opinion.visibility == Visibility::open ? Visibility::partial : Visibility::open;
+      opinion.classes.push_back(0);
+      return opinion;
+    };
+    for (const Property& property : question_kind_named(kind).properties()) {
+      int applied = 0, broken = 0;
+      for (int k = 0; k < 12; ++k) {
+        const std::string name = property.name + std::to_string(k);
+        Random random(name), again(name);
+        const auto trial = try_property(property, question, right(question), right, random);
+        if (!trial) continue;
+        ++applied;
+        EXPECT_TRUE(trial->holds()) << kind << ": " << property.name;
+        broken += !try_property(property, question, right(question), wrong, again)->holds();
+      }
+      EXPECT_GT(applied, 0) << kind << ": " << property.name;
+      EXPECT_EQ(broken, applied) << kind << ": " << property.name;
+    }
+  }
+}
+
 TEST(AreaQuestions, AnExceptionOfTheOracleIsCounted) {
   QuestionKind kind = question_kind_named("shafts");
   kind.truth = [](const Question& q) -> Truth {
@@ -225,6 +256,14 @@ TEST(AreaQuestions, ErrorsOfPairsAreFound) {
   const Truth truth = pair_truth(question);
   EXPECT_FALSE(truth.judge(right(question)).is_wrong);
   EXPECT_TRUE(truth.judge(careless(question)).is_wrong);
+  // By less than what samples may miss.
+  const PairOracleAnswer sampled = oracle_pair_form_factors(question, Care::sampled);
+  Opinion slightly = right(question);
+  slightly.margin = slightly.reverse_margin = 1e-9;
+  EXPECT_FALSE(truth.judge(slightly).is_wrong);
+  slightly.F += 2e-4;
+  EXPECT_LT(2e-4L, sampled.error);
+  EXPECT_TRUE(truth.judge(slightly).is_wrong);
   const Property& swap = pair_properties().back();
   ASSERT_EQ(swap.name, "swapped");
   Random random("swap");

@@ -49,6 +49,8 @@ TEST(Judge, WhatIsNoNumberIsWrong) {
   unsaid.margin = 1;
   EXPECT_FALSE(judge(right, truth).is_wrong);
   EXPECT_TRUE(judge(unsaid, truth).is_wrong);
+  EXPECT_TRUE(std::isinf(judge(unsaid, truth).error)) << "the worst of some would not show a NaN";
+  EXPECT_TRUE(std::isinf(judge(unsaid, truth).relative_error));
   EXPECT_TRUE(judge(unproven, truth).is_wrong);
 }
 
