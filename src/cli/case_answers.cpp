@@ -321,14 +321,22 @@ void answer_kind(const nlohmann::json& question, double tolerance, Json& result)
 
 }  // namespace
 
+Json answer_to(const nlohmann::json& question, double tolerance) {
+  Json result = Json::object();
+  try {
+    answer_kind(question, tolerance, result);
+  } catch (const std::invalid_argument& refused) {  // by the library (point_question.h)
+    throw InvalidCase(refused.what());
+  }
+  for (const auto& [key, value] : result.items()) refuse_non_finite(value, key);
+  return result;
+}
+
 Json answer_case(const nlohmann::json& question, double tolerance) {
   const Json id = question.is_object() && question.contains("id") ? Json(question["id"]) : Json(nullptr);
   try {
-    Json result = Json::object();
-    answer_kind(question, tolerance, result);
-    for (const auto& [key, value] : result.items()) refuse_non_finite(value, key);
     Json answered{{"id", id}, {"status", "ok"}};
-    answered.update(result);
+    answered.update(answer_to(question, tolerance));
     return answered;
   } catch (const std::exception& wrong) {
     return {{"id", id}, {"status", "error"}, {"message", wrong.what()}};

@@ -119,6 +119,7 @@ std::string contender_in_words(const StressReport& report, const std::string& co
       sum.worst_error, sum.worst_relative_error);
   std::string departing;
   for (const Departure& d : departures()) departing += fmt::format("{:>8}", d.name);
+  if (sum.worst_margin > 0) text += fmt::format("  its largest margin of an F is {:.3g}\n", sum.worst_margin);
   text += fmt::format("  {:<17}{:>9}{}{:>10}{:>10}{:>8}{:>10}{:>9}{:>9}{:>9}\n", "wrong by family", "questions",
                       departing, "error", "relative", "broken", "defect", "interval", "exact", "us each");
   for (const auto& [family, rows] : by_family(report, contender)) text += family_in_words(family, rows);
@@ -161,6 +162,7 @@ std::string to_json(const StressSummary& summary) {
   json["contenders"] = Json::object();
   for (const std::string& contender : summary.contenders)
     json["contenders"][contender] = of_tally(*report.kind, report.total(contender));
+  json["found"] = report.found;
   json["failures"] = Json::array();
   for (const StressFailure& failure : report.failures) {
     json["failures"].push_back({{"question", failure.question},
@@ -192,6 +194,10 @@ std::string in_words(const StressSummary& summary) {
     text += fmt::format("{}: {} of {}: ", failure.contender, failure.what, failure.question);
     text += failure.exception.empty() ? fmt::format("F = {:.17g}", failure.F) : "throws: " + failure.exception;
     text += failure.truth ? fmt::format(", truth {:.17g}\n", *failure.truth) : "\n";
+  }
+  if (summary.report.found > summary.report.failures.size()) {
+    text += fmt::format("{} of the {} wrong answers and broken properties are kept as failures\n",
+                        summary.report.failures.size(), summary.report.found);
   }
   std::map<std::string, std::uint64_t> exceptions;
   for (const UnjudgedQuestion& u : summary.report.unjudged) ++exceptions[u.exception];

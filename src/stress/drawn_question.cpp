@@ -106,17 +106,6 @@ Vec3 by_an_ulp(Vec3 v, Random& random) {
   return v;
 }
 
-bool has_defect(const Polygon& polygon) {
-  const PolygonDefect defect = find_defect(polygon);
-  return defect != PolygonDefect::none && defect != PolygonDefect::zero_area;
-}
-
-bool is_usable(const Question& question) {
-  return (question.receiver.outer.empty() || !has_defect(question.receiver)) && !has_defect(question.source) &&
-         std::ranges::none_of(question.occluders,
-                              [](const Obstacle& o) { return std::ranges::any_of(o.faces, has_defect); });
-}
-
 // --- Receivers ----------------------------------------------------------------------------------------------------
 
 /// A vector of whole numbers, brought near 1 by a power of two.
@@ -194,7 +183,7 @@ DrawnQuestion draw(const QuestionFamily& family, const Departure& departure, Ran
     question.receiver = place(question.receiver);
     for (Obstacle& obstacle : question.occluders) move_all(obstacle, place);
     if (departure.by_an_ulp) depart_by(by_an_ulp);
-    if (is_usable(question)) return {place.name, std::move(question)};
+    if (has_sound_polygons(question)) return {place.name, std::move(question)};
   }
   throw std::logic_error(family.name + ": no usable question in " + std::to_string(kTries) + " tries");
 }

@@ -17,6 +17,16 @@ PolygonSoup soup_of(const Question& question) {
 
 }  // namespace
 
+bool has_sound_polygons(const Question& question) {
+  const auto is_sound = [](const Polygon& polygon) {
+    const PolygonDefect defect = find_defect(polygon);
+    return defect == PolygonDefect::none || defect == PolygonDefect::zero_area;
+  };
+  return (question.receiver.outer.empty() || is_sound(question.receiver)) && is_sound(question.source) &&
+         std::ranges::all_of(question.occluders,
+                             [&](const Obstacle& o) { return std::ranges::all_of(o.faces, is_sound); });
+}
+
 Question near_one(const Question& question) {
   ExactScale scale;
   scale.include(question.point);

@@ -12,6 +12,9 @@ struct Question : PointQuestion {
   Polygon receiver;  ///< empty where a point alone is asked about
 };
 
+/// Whether no polygon of it has a defect but zero area; the receiver may be empty.
+bool has_sound_polygons(const Question& question);
+
 /// The question with coordinates divided by a power of two that brings them near 1; the normal stays. Throws
 /// std::invalid_argument when they span too many orders of magnitude (ExactScale).
 Question near_one(const Question& question);

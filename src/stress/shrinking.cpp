@@ -6,18 +6,6 @@
 namespace exitance {
 namespace {
 
-bool is_usable(const Polygon& polygon) {
-  const PolygonDefect defect = find_defect(polygon);
-  return defect == PolygonDefect::none || defect == PolygonDefect::zero_area;
-}
-
-bool is_usable(const Question& question) {
-  return question.normal != Vec3{} && (question.receiver.outer.empty() || is_usable(question.receiver)) &&
-         is_usable(question.source) && std::ranges::all_of(question.occluders, [](const Obstacle& o) {
-           return std::ranges::all_of(o.faces, [](const Polygon& face) { return is_usable(face); });
-         });
-}
-
 /// To so many bits.
 double rounded(double v, int bits) {
   if (v == 0) return v;
@@ -44,7 +32,7 @@ class Shrinking {
   bool accept(const Change& change) {
     if (tries_left_ == 0) return false;
     Question smaller = smallest_;
-    if (!change(smaller) || !is_usable(smaller)) return false;
+    if (!change(smaller) || smaller.normal == Vec3{} || !has_sound_polygons(smaller)) return false;
     --tries_left_;
     if (!fails_(smaller)) return false;
     smallest_ = std::move(smaller);

@@ -108,6 +108,7 @@ class StressRun {
     }
     if (options_.save && report.complete) options_.save(state_);  // making failures small may take long
     report.questions = state_.done;
+    report.found = state_.found.size();
     report.failures = failures();
     report.unjudged = unjudged();
     report.complete = report.complete && !stopped();

@@ -104,6 +104,7 @@ struct StressReport {
   const QuestionKind* kind = nullptr;
   std::vector<StressRow> rows;             ///< by contender, family, departure
   std::vector<StressFailure> failures;     ///< in the order of the questions
+  std::uint64_t found = 0;                 ///< wrong answers and broken properties, kept as failures or not
   std::vector<UnjudgedQuestion> unjudged;  ///< likewise
   std::uint64_t questions = 0;
   std::uint64_t resumed = 0;  ///< of them, those that an earlier run had asked

@@ -35,7 +35,10 @@ TEST(StressRun, FindsNothingWrongOfTheExactContender) {
   EXPECT_EQ(total.broken(), 0u);
   EXPECT_LE(total.worst_error, 1e-13);
   EXPECT_LE(total.worst_relative_error, 1e-10);
+  EXPECT_LE(total.worst_margin, 2e-13) << "an error within a margin that is wide enough proves nothing";
+  EXPECT_GT(total.worst_margin, 0.0);
   EXPECT_TRUE(report.failures.empty());
+  EXPECT_EQ(report.found, 0u);
   for (const PropertyTally& property : total.properties) EXPECT_GT(property.tried, 0u);
   EXPECT_GT(total.stages.exact, 0u);
 }
@@ -74,6 +77,7 @@ TEST(StressRun, FindsACarelessContender) {
   const StressReport report = run_stress(options);
   EXPECT_GT(report.total("careless").wrong, 5u);
   ASSERT_EQ(report.failures.size(), 3u);
+  EXPECT_EQ(report.found, report.total("careless").wrong) << "kept or not";
   for (const StressFailure& failure : report.failures) {
     EXPECT_EQ(failure.what, "answer");
     EXPECT_EQ(failure.F, 0);

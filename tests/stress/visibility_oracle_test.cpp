@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "src/stress/placement.h"
+#include "src/stress/stage.h"
 
 namespace exitance {
 namespace {
@@ -17,18 +18,9 @@ using Loop = std::vector<Vec3>;
 constexpr long double kPi = std::numbers::pi_v<long double>;
 constexpr Vec3 kPoint{0, 0, 0}, kUp{0, 0, 1};
 
-/// Counter-clockwise seen from above.
-Loop rectangle(double z, double x0, double y0, double x1, double y1) {
-  return {{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}};
-}
-
 /// Faces down.
 Polygon ceiling(double z, double x0, double y0, double x1, double y1) {
-  return {{{x0, y1, z}, {x1, y1, z}, {x1, y0, z}, {x0, y0, z}}, {}};
-}
-
-Obstacle sheet(Loop loop) {
-  return {{{std::move(loop), {}}}, false};
+  return {reversed(rectangle(z, x0, y0, x1, y1)), {}};
 }
 
 long double form_factor(const Polygon& source, const std::vector<Obstacle>& occluders = {}, const Vec3& normal = kUp) {
