@@ -220,8 +220,9 @@ struct Change {
   std::vector<double> dB, dB_error;
 };
 
-/// ΔB = R + ΔE + Δρ H_before + ρ F_after ΔB (eq. 6, with what changes of the patches themselves), solved for the patches
-/// that are there after; a patch that is not loses all that it had. Errors: those of the right side may all add up.
+/// ΔB = R + ΔE + Δρ H_before + ρ F_after ΔB (eq. 6, with what changes of the patches themselves), solved for the
+/// patches that are there after; a patch that is not loses all that it had. Errors: those of the right side may all add
+/// up.
 Change solve_change(const SolvedEnclosure& before, const SolvedEnclosure& after, const CasePatches& given_before,
                     const CasePatches& given_after, const std::vector<double>& R, const std::vector<double>& R_error) {
   const std::size_t bands = given_before.bands;

@@ -196,12 +196,16 @@ std::string in_words(const StressSummary& summary) {
     text += failure.truth ? fmt::format(", truth {:.17g}\n", *failure.truth) : "\n";
   }
   if (summary.report.found > summary.report.failures.size()) {
-    text += fmt::format("{} of the {} wrong answers and broken properties are kept as failures\n",
-                        summary.report.failures.size(), summary.report.found);
+    text +=
+        fmt::format("{} of the {} wrong answers and broken properties are kept as failures, in failures.json, too\n",
+                    summary.report.failures.size(), summary.report.found);
   }
   std::map<std::string, std::uint64_t> exceptions;
   for (const UnjudgedQuestion& u : summary.report.unjudged) ++exceptions[u.exception];
-  for (const auto& [exception, count] : exceptions) text += fmt::format("not judged, {} times: {}\n", count, exception);
+  const bool is_cut = summary.report.unjudged.size() == StressOptions().failures_kept;
+  for (const auto& [exception, count] : exceptions) {
+    text += fmt::format("not judged, {} times{}: {}\n", count, is_cut ? " of those kept" : "", exception);
+  }
   const StressTally total = summary.total();
   text += fmt::format("{} questions in {:.3g} s: {} answers wrong, worst error {:.3g}; {} of {} properties broken\n",
                       summary.report.questions, summary.report.seconds, total.wrong, total.worst_error, total.broken(),

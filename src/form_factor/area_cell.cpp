@@ -149,7 +149,7 @@ SidePoint opposite_side(const AreaCell& cell, double s) {
 bool is_regular(const AreaCell& cell, const Vec3& normal) {
   // Between the sides the map is linear, so that it folds at one of them first; near a corner it does so where a bent
   // side runs beside the one next to it.
-  constexpr std::array kPlaces{0.0,   1.0 / 256, 1.0 / 64, 1.0 / 16, 0.125, 0.25, 0.375,      0.5,
+  constexpr std::array kPlaces{0.0,   1.0 / 256, 1.0 / 64, 1.0 / 16,  0.125,     0.25,        0.375, 0.5,
                                0.625, 0.75,      0.875,    15.0 / 16, 63.0 / 64, 255.0 / 256, 1.0};
   constexpr double kRounding = 1e-12;
   for (const double s : kPlaces) {

@@ -47,8 +47,8 @@ struct SidePoint {
 SidePoint first_side(const AreaCell& cell, double s);     ///< from corner 0 to 1
 SidePoint opposite_side(const AreaCell& cell, double s);  ///< from corner 3 to 2; of a triangle, its last corner
 
-/// Whether the map of the square onto a cell, which gauss_points() tells of, does not fold, in the plane of `normal`, on
-/// its side: seen at places along both sides, the denser the nearer to corners. Sides may start from one point, or
+/// Whether the map of the square onto a cell, which gauss_points() tells of, does not fold, in the plane of `normal`,
+/// on its side: seen at places along both sides, the denser the nearer to corners. Sides may start from one point, or
 /// along each other.
 bool is_regular(const AreaCell& cell, const Vec3& normal);
 

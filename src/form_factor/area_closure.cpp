@@ -46,8 +46,7 @@ bool sees_backs(const PatchMesh& mesh, const PolygonSoup& soup, const Element& e
 
 }  // namespace
 
-AreaClosure area_closure(const PatchMesh& mesh, const PolygonSoup& soup, const FormFactorMatrix& rows,
-                         bool closed) {
+AreaClosure area_closure(const PatchMesh& mesh, const PolygonSoup& soup, const FormFactorMatrix& rows, bool closed) {
   AreaClosure result;
   const std::vector<double> sums = row_sums(rows);
   const Contacts contacts(soup);

@@ -20,7 +20,6 @@ struct AreaClosure {
 /// Of rows of all elements of the mesh, which is of the soup's scene. Of an open scene only what may be covered counts.
 /// Points are 9 a cell of an element: where all of
 /// them miss a back, what an element sees of it counts as a defect.
-AreaClosure area_closure(const PatchMesh& mesh, const PolygonSoup& soup, const FormFactorMatrix& rows,
-                         bool closed);
+AreaClosure area_closure(const PatchMesh& mesh, const PolygonSoup& soup, const FormFactorMatrix& rows, bool closed);
 
 }  // namespace exitance

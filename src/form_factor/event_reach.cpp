@@ -107,7 +107,8 @@ std::vector<LineStretch> EventReach::of_vertex_edge(const CutPlane& plane, const
                                                     const Vec3& to, Way way, Vec3& along) const {
   const SightPlane sight(receiver_, plane, blur_of(plane, from, to));
   along = sight.along();
-  // Of what pierces the planes of receiver or source no part of the trace is left out: there what was left out was missed.
+  // Of what pierces the planes of receiver or source no part of the trace is left out: there what was left out was
+  // missed.
   const double below = -kLonger * size_;
   for (const Vec3& v : {vertex, from, to}) {
     if (receiver_.at(v) < below || source_plane_.at(v) < below) return {{-INFINITY, INFINITY}};

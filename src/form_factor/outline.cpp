@@ -29,10 +29,11 @@ std::ptrdiff_t stretches_along(const SeenEdge& line, std::span<const SeenEdge> e
   const auto touches = [](const Vec3& p, const Vec3& q) { return norm(p - q) <= kTouching; };
   return std::ranges::count_if(along, [&](const SeenEdge& e) {
     if (e.from == e.to) return false;
-    const bool continues = std::ranges::any_of(
-        along, [&](const SeenEdge& f) { return f.id != e.id && touches(f.to, e.from); });
-    return !continues || std::ranges::any_of(
-                             others, [&](const SeenEdge& g) { return touches(g.from, e.from) || touches(g.to, e.from); });
+    const bool continues =
+        std::ranges::any_of(along, [&](const SeenEdge& f) { return f.id != e.id && touches(f.to, e.from); });
+    return !continues || std::ranges::any_of(others, [&](const SeenEdge& g) {
+      return touches(g.from, e.from) || touches(g.to, e.from);
+    });
   });
 }
 

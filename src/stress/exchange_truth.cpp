@@ -63,7 +63,8 @@ class Truth {
   Truth(std::span<const Vec3> receiver, std::span<const Vec3> source, std::span<const ConvexBody> occluders,
         const TruthOptions& options);
   ExchangeTruth integrate();
-  ExchangeTruth sample(std::uint64_t seed);
+  ExchangeTruth sample(std::uint64_t seed, long directions, long step);
+  Real smaller_area() const { return smaller_; }
 
  private:
   /// A body's edge at a fixed longitude: points along it are (x, cos β (a + b x) − sin β (c + d x)).
@@ -472,10 +473,10 @@ ExchangeTruth Truth::integrate() {
 
 /// Where all lines from receiver to source rise steeply enough, over the part of the plane at height 1 that they meet;
 /// else over the disc below the hemisphere.
-ExchangeTruth Truth::sample(std::uint64_t seed) {
+ExchangeTruth Truth::sample(std::uint64_t seed, long directions, long step) {
   ExchangeTruth truth;
   if (empty_) return truth;
-  constexpr int kDirections = 1597, kStep = 987, kShifts = 8;  // Fibonacci numbers
+  constexpr int kShifts = 8;
   constexpr Real kSteep = 0.3L;
   const Point n = receiver_plane_.normal, s = unit(cross(n, std::fabs(n.x) < 0.6L ? Point{1, 0, 0} : Point{0, 1, 0})),
               t = cross(n, s);
@@ -511,10 +512,11 @@ ExchangeTruth Truth::sample(std::uint64_t seed) {
   for (int shift = 0; shift < kShifts; ++shift) {
     const Real a = random.real(0, 1), b = random.real(0, 1);
     Real mean = 0;
-    for (int k = 0; k < kDirections; ++k) {
-      const Real value = value_at(std::fmod(a + Real(k) / kDirections, Real(1)),
-                                  std::fmod(b + Real(k * kStep % kDirections) / kDirections, Real(1)));
-      mean += value / kDirections;
+    const auto count = static_cast<Real>(directions);
+    for (long k = 0; k < directions; ++k) {
+      const Real value = value_at(std::fmod(a + static_cast<Real>(k) / count, Real(1)),
+                                  std::fmod(b + static_cast<Real>(k * step % directions) / count, Real(1)));
+      mean += value / count;
       largest = std::max(largest, value);
     }
     sum += mean;
@@ -523,7 +525,7 @@ ExchangeTruth Truth::sample(std::uint64_t seed) {
   truth.integral = sum / kShifts;
   const Real variance = std::max(Real(0), squares / kShifts - truth.integral * truth.integral) / (kShifts - 1);
   truth.standard_error = std::sqrt(variance);
-  truth.error = 6 * truth.standard_error + 6 * largest / (kShifts * kDirections);
+  truth.error = 6 * truth.standard_error + 6 * largest / static_cast<Real>(kShifts * directions);
   truth.evaluations = evaluations_;
   return truth;
 }
@@ -532,7 +534,10 @@ ExchangeTruth Truth::sample(std::uint64_t seed) {
 
 ExchangeTruth sampled_exchange(std::span<const Vec3> receiver, std::span<const Vec3> source,
                                std::span<const ConvexBody> occluders, std::uint64_t seed) {
-  return Truth(receiver, source, occluders, {}).sample(seed);
+  constexpr Real kEnough = 1e-5L;
+  Truth truth(receiver, source, occluders, {});
+  const ExchangeTruth coarse = truth.sample(seed, 1597, 987);  // Fibonacci numbers
+  return 6 * coarse.standard_error <= kEnough * truth.smaller_area() ? coarse : truth.sample(seed, 17711, 10946);
 }
 
 ExchangeTruth exchange_truth(std::span<const Vec3> receiver, std::span<const Vec3> source,

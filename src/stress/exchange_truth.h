@@ -19,10 +19,10 @@ namespace exitance {
 using ConvexBody = std::vector<std::vector<Vec3>>;
 
 struct ExchangeTruth {
-  long double integral = 0;  ///< A_i F_ij [m²]
-  long double error = 0;     ///< ten times the quadrature rules' own estimate, and rounding [m²]
+  long double integral = 0;        ///< A_i F_ij [m²]
+  long double error = 0;           ///< ten times the quadrature rules' own estimate, and rounding [m²]
   long double standard_error = 0;  ///< of a mean of samples [m²]; 0 where it is an integral
-  long evaluations = 0;      ///< of areas
+  long evaluations = 0;            ///< of areas
 };
 
 struct TruthOptions {
@@ -43,10 +43,10 @@ struct TruthOptions {
 ExchangeTruth exchange_truth(std::span<const Vec3> receiver, std::span<const Vec3> source,
                              std::span<const ConvexBody> occluders, const TruthOptions& options = {});
 
-/// The same by 12,776 directions, lattices of 1,597 that are shifted eight times at random (`seed`): in a tenth of a
-/// second at most, with standard errors of some 1e-5 of the smaller polygon's area. The error is six of them, and six
-/// directions' share of the largest value, as what is seen in fewer directions may be missed by all: some 6e-4, an
-/// estimate that fails once in some thousand times.
+/// The same by a lattice of 1,597 directions that is shifted eight times at random (`seed`), in a tenth of a second at
+/// most; where six standard errors are more than 1e-5 of the smaller polygon's area then, by one of 17,711, in a second
+/// or two. The error is six standard errors, which of eight shifts fail once in some thousand times, and six
+/// directions' share of the largest value, as what is seen in fewer directions may be missed by all.
 ExchangeTruth sampled_exchange(std::span<const Vec3> receiver, std::span<const Vec3> source,
                                std::span<const ConvexBody> occluders, std::uint64_t seed);
 

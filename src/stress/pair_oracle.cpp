@@ -102,7 +102,7 @@ class PairOracle {
   double size_ = 0;
   std::vector<Piece> receiver_, source_;
   std::vector<Hider> hiders_;
-  long double integral_ = 0, error_ = 0, variance_ = 0;
+  long double integral_ = 0, error_ = 0, standard_error_ = 0;
   long double receiver_area_ = 0, source_area_ = 0;
 };
 
@@ -258,7 +258,7 @@ void PairOracle::add_pair(const Piece& a, const Piece& b, const std::vector<Hide
         const ExchangeTruth sampled = sampled_exchange(one, other, bodies, 1);
         integral_ += sampled.integral;
         error_ += sampled.error;
-        variance_ += sampled.standard_error * sampled.standard_error;
+        standard_error_ += sampled.standard_error;  // all pieces have the same shifts
       }
       // Corners where contacts were cut off are rounded.
       if (is_cut) error_ += 16 * kRoundoff * (size_ + norm(one[0])) * size_;
@@ -302,11 +302,9 @@ PairOracleAnswer PairOracle::answer() {
       add_pair(a, b, hiders);
     }
   }
-  const long double rounding = 16 * static_cast<long double>(kRoundoff) * integral_,
-                    standard_error = std::sqrt(variance_);
-  return {integral_ / receiver_area_,           integral_ / source_area_,
-          (error_ + rounding) / receiver_area_, (error_ + rounding) / source_area_,
-          standard_error / receiver_area_,      standard_error / source_area_};
+  const long double rounding = 16 * static_cast<long double>(kRoundoff) * integral_;
+  return {integral_ / receiver_area_,         integral_ / source_area_,         (error_ + rounding) / receiver_area_,
+          (error_ + rounding) / source_area_, standard_error_ / receiver_area_, standard_error_ / source_area_};
 }
 
 }  // namespace

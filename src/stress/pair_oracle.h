@@ -22,9 +22,9 @@ struct PairOracleAnswer {
 };
 
 enum class Care : std::uint8_t {
-  sampled,  ///< along 12,776 directions for each pair of pieces, in a tenth of a second: mostly right to some 1e-5, but
-            ///< what is seen in few directions may be missed, which makes the error some 6e-4
-  full      ///< to some 1e-8, along two axes, which takes ten seconds; the error covers what these say of each other
+  sampled,  ///< along directions, in a second or two: to six standard errors, mostly 3e-5 of the smaller one at most;
+            ///< but what is seen in few directions may be missed, which makes the error larger
+  full  ///< to some 1e-8, along two axes, which takes ten seconds; the error covers what these say of each other
 };
 
 /// Form factors between the fronts of receiver and source. What lies within 1e-11 of their size of the plane of one of

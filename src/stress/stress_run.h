@@ -42,8 +42,8 @@ struct StressTally {
 
 /// Something found wrong, before it is made small.
 struct StressFinding {
-  std::uint64_t number = 0;             ///< of the question
-  std::size_t contender = 0, what = 0;  ///< what: the property, or their number for the answer
+  std::uint64_t number = 0;                   ///< of the question
+  std::size_t contender = 0, what = 0;        ///< what: the property, or their number for the answer
   std::optional<std::string> exception = {};  ///< what it says, where one was thrown instead of an answer
 };
 
@@ -105,7 +105,7 @@ struct StressReport {
   std::vector<StressRow> rows;             ///< by contender, family, departure
   std::vector<StressFailure> failures;     ///< in the order of the questions
   std::uint64_t found = 0;                 ///< wrong answers and broken properties, kept as failures or not
-  std::vector<UnjudgedQuestion> unjudged;  ///< likewise
+  std::vector<UnjudgedQuestion> unjudged;  ///< likewise, as many as failures may be kept
   std::uint64_t questions = 0;
   std::uint64_t resumed = 0;  ///< of them, those that an earlier run had asked
   double seconds = 0;         ///< of this run

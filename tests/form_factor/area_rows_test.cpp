@@ -41,7 +41,7 @@ double entry(const FormFactorMatrix& F, std::size_t row, std::uint32_t column) {
 
 TEST(AreaRows, OfACubeAreItsClosedForms) {
   const Rows whole = rows_of(scene_in("furnace_cube.toml"), 0, 1, 1e-12),
-                 halves = rows_of(scene_in("furnace_cube.toml"), 0, 2, 1e-12);
+             halves = rows_of(scene_in("furnace_cube.toml"), 0, 2, 1e-12);
   ASSERT_EQ(whole.F.rows(), 6u);
   ASSERT_EQ(halves.F.rows(), 24u);
   EXPECT_EQ(halves.F.columns, 6u);
@@ -65,7 +65,7 @@ TEST(AreaRows, OfACubeAreItsClosedForms) {
 
 TEST(AreaRows, OfElementsAreTheirPatchsOnAverage) {
   const Rows patches = rows_of(scene_in("box_on_floor.toml"), 1.5, 1, 1e-8),
-                 elements = rows_of(scene_in("box_on_floor.toml"), 1.5, 2, 1e-8);
+             elements = rows_of(scene_in("box_on_floor.toml"), 1.5, 2, 1e-8);
   EXPECT_LE(patches.closure.max_defect, patches.closure.largest_row_error + 1e-13);
   EXPECT_LE(elements.closure.max_defect, elements.closure.largest_row_error + 1e-13);
   EXPECT_LE(*elements.reciprocity_max_defect, 1e-7);

@@ -54,7 +54,8 @@ TEST(Outline, StretchesBetweenPartsThatOnlyTouchAreNotOne) {
 
 TEST(Outline, AStretchWithoutLengthDoesNotCount) {
   const std::array whole{stretch(1, kA, kB), stretch(2, kB, kC), stretch(3, kC, kA)};
-  const std::array with_a_point{stretch(1, kA, kB), stretch(1, kA, kB, 0.4, 0.4), stretch(2, kB, kC), stretch(3, kC, kA)};
+  const std::array with_a_point{stretch(1, kA, kB), stretch(1, kA, kB, 0.4, 0.4), stretch(2, kB, kC),
+                                stretch(3, kC, kA)};
   EXPECT_TRUE(same_lines(whole, with_a_point));
 }
 

@@ -73,8 +73,8 @@ TEST(VisualEvents, DoNotMatterWhereSomethingElseHidesThem) {
   EXPECT_TRUE(stretches_at(past({kPlate, {rectangle(0.125, -2, -2, 3, 3)}}), 0.2).empty());
 }
 
-/// A box hangs from the source's plane: a vertex that touches the source is seen against it past an edge below, wherever
-/// that is seen.
+/// A box hangs from the source's plane: a vertex that touches the source is seen against it past an edge below,
+/// wherever that is seen.
 TEST(VisualEvents, OfAVertexThatTouchesTheSourceMatterAllAlong) {
   const Vec3 vertex{0.75, 0.25, 1};
   for (const Vec3& turn : {Vec3{}, Vec3{0.125, -0.25, 0}}) {
@@ -95,8 +95,8 @@ TEST(VisualEvents, OfAVertexThatTouchesTheSourceMatterAllAlong) {
         const Vec3 at = pair.occluders[1][0][0] + share * (pair.occluders[1][0][1] - pair.occluders[1][0][0]);
         return vertex + 2.0 * (at - vertex);
       };
-      return lies_on(foot(0.4)) && lies_on(foot(0.6)) && norm(cross(e.plane.normal, expected.normal)) <
-                                                             1e-12 * norm(e.plane.normal) * norm(expected.normal);
+      return lies_on(foot(0.4)) && lies_on(foot(0.6)) &&
+             norm(cross(e.plane.normal, expected.normal)) < 1e-12 * norm(e.plane.normal) * norm(expected.normal);
     }));
   }
 }
@@ -173,9 +173,11 @@ TEST(VisualEvents, NoneIsLeftOutThatChangesWhatIsSeen) {
         const auto at_horizon = [&](const EdgeEvent& e) {
           return std::fabs(dot(receiver.normal, e.plane()->point - receiver.origin)) < 1e-12 * norm(receiver.normal);
         };
-        EXPECT_TRUE(std::ranges::any_of(by_three, [&](const EdgeEvent& e) {
-          return (!e.plane() || at_horizon(e)) && e.at(change->here) * e.at(change->there) <= 0;
-        }))
+        EXPECT_TRUE(std::ranges::any_of(by_three,
+                                        [&](const EdgeEvent& e) {
+                                          return (!e.plane() || at_horizon(e)) &&
+                                                 e.at(change->here) * e.at(change->there) <= 0;
+                                        }))
             << family << ' ' << number << " from " << change->here.x << ' ' << change->here.y << ' ' << change->here.z;
         ++curved;
       }

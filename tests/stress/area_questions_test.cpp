@@ -156,7 +156,8 @@ TEST(AreaQuestions, MissedAndFalseShadowsAreFound) {
   }
 }
 
-/// Shafts and shadows: each property holds of right answers, and not where a form of the question is answered otherwise.
+/// Shafts and shadows: each property holds of right answers, and not where a form of the question is answered
+/// otherwise.
 TEST(AreaQuestions, EveryPropertyFindsAWrongAnswer) {
   const Question question = squares({sheet(rectangle(0.5, 0.25, 0.25, 0.5, 0.75)),
                                      sheet({{0.5, 0, 0.25}, {1, 0, 0.25}, {1, 0.5, 0.375}, {0.5, 0.25, 0.25}}),

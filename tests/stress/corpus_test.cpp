@@ -1,5 +1,5 @@
-// Questions that were once answered wrong, by us or by plain doubles, each with the oracle's answer as `truth`. Of points
-// also the sum over a closed room around each; of pairs (pairs_*.json) the truth has a `truth_error`.
+// Questions that were once answered wrong, by us or by plain doubles, each with the oracle's answer as `truth`. Of
+// points also the sum over a closed room around each; of pairs (pairs_*.json) the truth has a `truth_error`.
 
 #include <gtest/gtest.h>
 
