@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// Rows that miss 1 by no more than their errors and this need no excuse.
+/// Rows that lack of 1 no more than their errors and this need no excuse.
 constexpr double kRounding = 1e-13;
 
 /// Whether a facet shows something else than its front to a point.
@@ -56,7 +56,7 @@ AreaClosure area_closure(const PatchMesh& mesh, const PolygonSoup& soup, const F
     const double error = std::accumulate(errors.begin(), errors.end(), 0.0), defect = std::fabs(sums[e] - 1);
     result.largest_row_error = std::max(result.largest_row_error, error);
     const Element& element = mesh.elements[e];
-    const bool needs_excuse = closed && defect > error + kRounding;
+    const bool needs_excuse = closed && 1 - sums[e] > error + kRounding;
     if (may_be_covered(soup, contacts, mesh.pieces_of(element)) ||
         (needs_excuse && sees_backs(mesh, soup, element, view))) {
       ++result.not_judged;

@@ -113,6 +113,8 @@ TEST(AreaRows, WhatSeesBacksNeedNotSeeOneInAll) {
         EXPECT_NEAR(wrong.max_defect, 1e-4, 1e-6) << "what sees no backs is judged";
       }
       EXPECT_EQ(area_closure(mesh, soup, less, false).max_defect, 0);
+      for (double& F : less.F) F *= 2;
+      EXPECT_GT(area_closure(mesh, soup, less, true).max_defect, 0.5) << "too much is no view of backs";
     }
   }
 }
