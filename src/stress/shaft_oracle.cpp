@@ -147,7 +147,8 @@ std::vector<std::uint32_t> items_of(const PolygonSoup& soup) {
   std::vector<std::uint32_t> items;
   for (std::uint32_t f = 0; f < facets; ++f) {
     const std::uint32_t shell = soup.facets()[f].shell;
-    if (shell == kNone || !soup.shells()[shell].convex) items.push_back(f);
+    const bool occludes = soup.is_present(f) && soup.role(soup.facets()[f].polygon) != Role::unoccluding;
+    if (occludes && (shell == kNone || !soup.shells()[shell].convex)) items.push_back(f);
   }
   for (std::uint32_t s = 0; s < soup.shells().size(); ++s) {
     if (soup.shells()[s].convex) items.push_back(facets + s);

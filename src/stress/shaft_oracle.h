@@ -46,7 +46,7 @@ bool plainly_separated(const ExactEnd& a, const ExactEnd& b, const ExactItem& sh
 /// Whether the interior of a convex shell holds a point of a convex loop.
 bool reaches_into(const ExactLoop& loop, const ExactItem& shell);
 
-/// Of a soup's index, ascending: its facets that are of no convex shell, and such shells.
+/// What a soup's index should hold, ascending: facets that occlude and are of no convex shell, and such shells.
 std::vector<std::uint32_t> items_of(const PolygonSoup& soup);
 
 /// Of the facets of one soup, which must outlive it. Not for several threads at once.
